@@ -16,8 +16,8 @@ if [ ! -s "$out/knee/knee.nrrd" ] || [ "$fenestra" -nt "$out/knee/knee.nrrd" ]; 
   "$fenestra" phantom knee --output "$out/knee"
 fi
 
-# View from the front and slightly below, onto both lesions of the femoral cartilage. labelsmoothing removes the
-# steps of the label map's 1 mm slices, soft those of the scan at the border of the cartilage.
+# View from the front and slightly below, onto both lesions of the femoral cartilage. --labelsmoothing removes the
+# steps of the label map's 1 mm slices, --soft those of the scan at the border of the cartilage.
 scene=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
   --focus "Femoral cartilage" --labelsmoothing 0.6 --position=-15,200,-90 --size 384x384 --samples 16)
 

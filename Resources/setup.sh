@@ -17,7 +17,7 @@ stage() {
   say "$name"
   "$@" || die "$name failed"
   took=$((SECONDS - start))
-  [ $((2 * took)) -le $((3 * budget)) ] || late="  <== TOO LONG: at least half over its budget"
+  [ $((2 * took)) -le $((3 * budget)) ] || late="  <== TOO LONG: over 1.5 times its budget"
   stages+=("$(printf '%5d s of %4d s  %s%s' "$took" "$budget" "$name" "$late")")
 }
 print_stages() {

@@ -63,7 +63,7 @@ qSlicerFenestraClipping::qSlicerFenestraClipping(qMRMLNodeComboBox* planeNode, Q
   for (QComboBox* box : {m_clip, m_plane}) // also if no flag changes
     connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
             &qSlicerFenestraClipping::showMode);
-  for (QComboBox* box : {m_clip, m_boundary, m_innerRadius, m_plane})
+  for (QComboBox* box : {m_clip, m_boundary, m_holeShape, m_plane})
     connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
             &qSlicerFenestraClipping::changed);
   connect(m_planeNode, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SIGNAL(changed()));
@@ -88,10 +88,10 @@ void qSlicerFenestraClipping::buildMode(QFormLayout* form) {
   form->addRow(tr("Edge of the focus:"), m_boundary);
   addNumber(form, "ghost", tr("Density in front:"), 0.01, 10.0, {"ghost"},
             tr("Percentage of its density that tissue in front of the surface keeps"));
-  m_innerRadius =
+  m_holeShape =
       makeComboBox("HoleBox", {{tr("Cylinder"), ""}, {tr("Box"), "box"}, {tr("Sphere"), "sphere"}},
                    tr("Shape of the hole from the camera to the focus"));
-  form->addRow(tr("Shape:"), m_innerRadius);
+  form->addRow(tr("Shape:"), m_holeShape);
   addNumber(form, "holemargin", tr("Wider by:"), 1.0, 5.0, {"hole"},
             tr("How much wider the hole is than the focus"));
   m_plane = makeComboBox("PlaneBox", {}, tr("Position of the clip plane"));
@@ -159,7 +159,7 @@ void qSlicerFenestraClipping::showMode() {
   m_clip->setItemText(0, m_byPreset ? tr("From the anatomy preset")
                                     : tr("Smooth surface through the focus"));
   showRow(m_form, m_boundary, surface);
-  showRow(m_form, m_innerRadius, now == "hole");
+  showRow(m_form, m_holeShape, now == "hole");
   showRow(m_form, m_plane, now == "plane");
   showRow(m_form, m_planeNode, now == "plane" && plane() == Plane::node);
   for (const Number& number : m_numbers) {
@@ -189,7 +189,7 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
   if (clips && (now == "surface" || now == "ghost")) // the renderer's default, not the panel's
     selectData(m_boundary, flags.count("boundary") > 0 ? findFlag(flags, "boundary") : "spline");
   if (now == "hole")
-    selectData(m_innerRadius, findFlag(flags, "hole"));
+    selectData(m_holeShape, findFlag(flags, "hole"));
   if (now == "plane") {
     const int fixed = m_plane->findData(int(Plane::fixed));
     if (plane == Plane::fixed && fixed < 0)
@@ -218,7 +218,7 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
 
 void qSlicerFenestraClipping::reset() {
   const QSignalBlocker blocker(this);
-  for (QComboBox* box : {m_clip, m_boundary, m_innerRadius, m_plane})
+  for (QComboBox* box : {m_clip, m_boundary, m_holeShape, m_plane})
     box->setCurrentIndex(0);
   for (Number& number : m_numbers) {
     number.shown.clear();
@@ -244,7 +244,7 @@ void qSlicerFenestraClipping::take(Flags& flags, const std::string& plane, bool 
   flags["boundary"] = clips && surface ? word(m_boundary) : "";
   if (flags["boundary"] != "spline")
     flags["controlpoints"] = flags["smoothing"] = ""; // used only by the spline
-  flags["hole"] = clips && now == "hole" ? word(m_innerRadius) : "";
+  flags["hole"] = clips && now == "hole" ? word(m_holeShape) : "";
   flags["margin"] = hasFocus ? m_margins->flag().toStdString() : "";
   for (const Number& number : m_numbers) {
     const bool isUsed = hasFocus && (number.modes.isEmpty() || number.modes.contains(now));

@@ -64,7 +64,7 @@ private:
 
   QComboBox* m_clip;
   QComboBox* m_boundary;
-  QComboBox* m_innerRadius;
+  QComboBox* m_holeShape;
   QComboBox* m_plane;
   qMRMLNodeComboBox* m_planeNode;
   qSlicerFenestraMargins* m_margins;

@@ -9,24 +9,24 @@
 
 namespace {
 
-enum Role : std::size_t { key, fill, halo, environment, none };
+enum Role : std::size_t { key, fill, rim, environment, none };
 
 /// Role of each light.
 std::vector<Role> assignRoles(const QJsonArray& lights) {
   std::vector<Role> roles;
-  Role before = key; // role of the next light in front of the volume
+  Role next = key; // role of the next light in front of the volume
   for (const QJsonValue& value : lights) {
     const QJsonObject light = value.toObject();
     const QString type = light["type"].toString();
-    const bool surrounds = type == "environment" || type == "sky";
+    const bool isEnvironment = type == "environment" || type == "sky";
     const bool isPlaced = light["frame"] == "camera" && light.contains("center");
-    if (surrounds || !isPlaced) {
-      roles.push_back(surrounds ? environment : none);
+    if (isEnvironment || !isPlaced) {
+      roles.push_back(isEnvironment ? environment : none);
     } else if (light["center"].toArray().at(2).toDouble() < 0.0) { // z is toward the viewer
-      roles.push_back(halo);
+      roles.push_back(rim);
     } else {
-      roles.push_back(before);
-      before = before == key ? fill : none;
+      roles.push_back(next);
+      next = next == key ? fill : none;
     }
   }
   return roles;

@@ -100,19 +100,19 @@ void qSlicerFenestraLook::buildDisplay(QFormLayout* form) {
   m_shownTone = defaultTone;
 }
 
-void qSlicerFenestraLook::setCapabilities(const qFenestraCapabilities& abilities) {
-  showRow(m_form, m_exposure, abilities.flags.contains("exposure"));
-  showRow(m_form, m_tone, abilities.flags.contains("tone"));
+void qSlicerFenestraLook::setCapabilities(const qFenestraCapabilities& capabilities) {
+  showRow(m_form, m_exposure, capabilities.flags.contains("exposure"));
+  showRow(m_form, m_tone, capabilities.flags.contains("tone"));
 }
 
 // ---- flags
 
 void qSlicerFenestraLook::show(const Flags& flags, const QString& rig, bool byPreset) {
   const QSignalBlocker blocker(this);
-  const QString left = tr("From the anatomy preset");
+  const QString fromPreset = tr("From the anatomy preset");
   m_transfer->setItemText(m_transfer->findData(""),
-                          byPreset ? left : tr("As in Slicer's volume rendering"));
-  m_rig->setItemText(m_rig->findData(""), byPreset ? left : tr("Default"));
+                          byPreset ? fromPreset : tr("As in Slicer's volume rendering"));
+  m_rig->setItemText(m_rig->findData(""), byPreset ? fromPreset : tr("Default"));
   selectOrAdd(m_transfer, findFlag(flags, "transfer"));
   selectOrAdd(m_background, findFlag(flags, "background"));
   showLights(findFlag(flags, "lights"), rig);
@@ -123,17 +123,17 @@ void qSlicerFenestraLook::show(const Flags& flags, const QString& rig, bool byPr
 }
 
 void qSlicerFenestraLook::showLights(const QString& lights, const QString& rig) {
-  const QStringList words = rig.split(' ');
+  const QStringList parts = rig.split(' ');
   qSlicerFenestraLights::Strengths strengths = qSlicerFenestraLights::unchanged;
   for (std::size_t i = 0; i < strengths.size(); ++i) {
     bool isNumber = false;
-    const double percent = words.value(static_cast<int>(i) + 1).toDouble(&isNumber);
+    const double percent = parts.value(static_cast<int>(i) + 1).toDouble(&isNumber);
     if (isNumber && percent >= 0.0 && percent <= maxStrength)
       strengths[i] = percent / 100.0;
   }
-  const bool isConsistent = m_rig->findData(words[0]) >= 0 &&
-                            qSlicerFenestraLights::makeFlag(words[0], strengths) == lights;
-  selectOrAdd(m_rig, isConsistent ? words[0] : lights);
+  const bool isConsistent = m_rig->findData(parts[0]) >= 0 &&
+                            qSlicerFenestraLights::makeFlag(parts[0], strengths) == lights;
+  selectOrAdd(m_rig, isConsistent ? parts[0] : lights);
   if (!isConsistent)
     strengths = qSlicerFenestraLights::unchanged;
   const auto has = qSlicerFenestraLights::findLights(m_rig->currentData().toString());

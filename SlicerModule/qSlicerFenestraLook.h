@@ -25,7 +25,7 @@ public:
   explicit qSlicerFenestraLook(QWidget* parent = nullptr);
 
   /// Shows the controls that the renderer supports.
-  void setCapabilities(const qFenestraCapabilities& abilities);
+  void setCapabilities(const qFenestraCapabilities& capabilities);
   /// Shows the flags. `rig`: rig and strengths as take() returned them; used only if they produce
   /// the flag `lights`. `byPreset`: an anatomy preset sets what flags do not set.
   void show(const Flags& flags, const QString& rig, bool byPreset);

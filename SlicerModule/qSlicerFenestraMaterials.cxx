@@ -99,7 +99,7 @@ void qSlicerFenestraMaterials::buildSource(QFormLayout* form) {
 }
 
 void qSlicerFenestraMaterials::buildTable(QFormLayout* form) {
-  constexpr int tallest = 260; // pixels
+  constexpr int maxHeight = 260; // pixels
   m_table = new QTableWidget(0, columns);
   m_table->setObjectName("MaterialsTable");
   m_table->setAccessibleName(tr("Materials of the segments"));
@@ -109,7 +109,7 @@ void qSlicerFenestraMaterials::buildTable(QFormLayout* form) {
       ->setToolTip(tr("Unchecked: the segment is not clipped"));
   m_table->verticalHeader()->hide();
   m_table->setSelectionMode(QAbstractItemView::NoSelection);
-  m_table->setMaximumHeight(tallest);
+  m_table->setMaximumHeight(maxHeight);
   for (int i = 0; i < columns; ++i)
     m_table->horizontalHeader()->setSectionResizeMode(i, i == nameColumn || i == materialColumn
                                                              ? QHeaderView::Stretch
@@ -184,8 +184,7 @@ SlicerExport::MaterialChange qSlicerFenestraMaterials::findChange(const QString&
   return source() == manualSource ? m_changes.value(segment) : Change();
 }
 
-/// Material that the renderer chooses, as far as known here: the user's file may choose another
-/// one.
+/// Material that the renderer chooses. The choices of a user's file are unknown here.
 qFenestraMaterial qSlicerFenestraMaterials::findAutomatic(const QString& segment) const {
   const qFenestraMaterial one = m_known.bySegment.value(segment);
   const QString word = base();
@@ -248,10 +247,10 @@ void qSlicerFenestraMaterials::showRow(int row) {
   selectOrAdd(material, QString::fromStdString(change.field("material")));
   auto* color = cell<QToolButton>(row, colorColumn);
   color->setAccessibleName(tr("Color of %1").arg(name));
-  const QString seen = findColor(id);
-  color->setIcon(seen.isEmpty() ? QIcon() : makeSwatch(seen));
-  color->setText(seen.isEmpty() ? tr("...") : QString());
-  color->setToolTip(tr("Displayed color of the segment, sRGB %1").arg(seen));
+  const QString shownColor = findColor(id);
+  color->setIcon(shownColor.isEmpty() ? QIcon() : makeSwatch(shownColor));
+  color->setText(shownColor.isEmpty() ? tr("...") : QString());
+  color->setToolTip(tr("Displayed color of the segment, sRGB %1").arg(shownColor));
   const std::string clip = change.field("clip");
   const bool isClipped = clip.empty() ? own.isClipped : clip != "no";
   m_table->item(row, clipColumn)->setCheckState(isClipped ? Qt::Checked : Qt::Unchecked);
@@ -278,7 +277,7 @@ void qSlicerFenestraMaterials::change(int row, const std::map<std::string, QStri
   onSource();
 }
 
-/// Manual changes need other materials to apply to.
+/// Remembers the materials to which manual changes apply; by default the automatic ones.
 void qSlicerFenestraMaterials::onSource() {
   if (source() != manualSource)
     m_base = base();
@@ -293,7 +292,7 @@ void qSlicerFenestraMaterials::onFile() {
     onSource();
 }
 
-/// A new material replaces the color, too.
+/// A new material also replaces the color.
 void qSlicerFenestraMaterials::onMaterial(int row) {
   const QString name = cell<QComboBox>(row, materialColumn)->currentData().toString();
   change(row, {{"material", name}, {"color", {}}});
@@ -349,20 +348,20 @@ void qSlicerFenestraMaterials::setChanges(const std::vector<std::string>& texts)
 void qSlicerFenestraMaterials::show(const Flags& flags) {
   const QString given = findFlag(flags, "materials");
   const auto texts = SlicerExport::splitList(findFlag(flags, "material").toStdString());
-  const bool isByHand = !texts.empty() || (source() == manualSource && given == m_base);
+  const bool isManual = !texts.empty() || (source() == manualSource && given == m_base);
   const bool isFile = !given.isEmpty() && m_source->findData(given) < 0;
   const bool isNoFileYet = given.isEmpty() && source() == fileSource && m_file->text().isEmpty();
   const bool isNotPassed = m_segments.isEmpty() && given.isEmpty() && texts.empty();
-  if (isNotPassed || (isNoFileYet && !isByHand))
+  if (isNotPassed || (isNoFileYet && !isManual))
     return;
   const QScopedValueRollback<bool> showing(m_showing, true);
   if (isFile)
     m_file->setText(given);
-  m_source->setCurrentIndex(m_source->findData(isByHand ? manualSource
+  m_source->setCurrentIndex(m_source->findData(isManual ? manualSource
                                                : isFile ? fileSource
                                                         : given));
   m_base = given;
-  if (isByHand)
+  if (isManual)
     setChanges(texts);
   showSource();
 }

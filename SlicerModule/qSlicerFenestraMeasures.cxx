@@ -17,7 +17,7 @@ struct MeasureInfo {
 };
 
 /// Known measures, the most important first.
-QList<MeasureInfo> knownMeasures() {
+QList<MeasureInfo> listKnownMeasures() {
   const auto tr = [](const char* text) { return QObject::tr(text); };
   return {
       {"focusCoverage", Unit::fraction, tr("Focus visible"),
@@ -45,7 +45,7 @@ QList<MeasureInfo> knownMeasures() {
   };
 }
 
-QString number(double value, Unit unit) {
+QString formatNumber(double value, Unit unit) {
   if (unit == Unit::fraction) // 99.98 % must not read as 100.0 %
     return QString::number(100.0 * value, 'f', value > 0.99 && value < 1.0 ? 2 : 1);
   if (value < 0.001) // not 4.1e-07 mm
@@ -53,7 +53,7 @@ QString number(double value, Unit unit) {
   return value < 9.95 ? QString::number(value, 'g', 2) : QString::number(value, 'f', 0);
 }
 
-QString suffix(Unit unit) {
+QString unitSuffix(Unit unit) {
   switch (unit) {
   case Unit::fraction:
     return QObject::tr(" %");
@@ -70,22 +70,22 @@ QString suffix(Unit unit) {
 /// Text of a number, or of a distribution: mean, 95th percentile and maximum.
 QString toUserText(const QJsonValue& value, Unit unit) {
   if (value.isDouble())
-    return number(value.toDouble(), unit) + suffix(unit);
+    return formatNumber(value.toDouble(), unit) + unitSuffix(unit);
   const QJsonObject object = value.toObject();
   QStringList parts;
-  for (const auto& [key, words] :
+  for (const auto& [key, text] :
        {std::pair{"mean", QObject::tr("mean %1")}, std::pair{"p95", QObject::tr("95 % below %1")},
         std::pair{"max", QObject::tr("at most %1")}})
     if (const QJsonValue part = object[QLatin1String(key)]; part.isDouble())
-      parts << words.arg(number(part.toDouble(), unit));
-  return parts.isEmpty() ? QString() : parts.join(", ") + suffix(unit);
+      parts << text.arg(formatNumber(part.toDouble(), unit));
+  return parts.isEmpty() ? QString() : parts.join(", ") + unitSuffix(unit);
 }
 
 } // namespace
 
 QJsonObject qSlicerFenestraMeasures::selectMeasures(const QJsonObject& statistics) {
   QJsonObject measures;
-  for (const MeasureInfo& one : knownMeasures()) {
+  for (const MeasureInfo& one : listKnownMeasures()) {
     const QJsonValue value = statistics[QLatin1String(one.key)];
     if (value.isDouble() || value.isObject())
       measures[QLatin1String(one.key)] = value;
@@ -96,7 +96,7 @@ QJsonObject qSlicerFenestraMeasures::selectMeasures(const QJsonObject& statistic
 QList<qSlicerFenestraMeasures::Measure>
 qSlicerFenestraMeasures::toUserText(const QJsonObject& measures) {
   QList<Measure> all;
-  for (const MeasureInfo& one : knownMeasures()) {
+  for (const MeasureInfo& one : listKnownMeasures()) {
     const QString value = ::toUserText(measures[QLatin1String(one.key)], one.unit);
     if (!value.isEmpty())
       all.append({one.name, value, one.help});
@@ -107,8 +107,8 @@ qSlicerFenestraMeasures::toUserText(const QJsonObject& measures) {
 QString qSlicerFenestraMeasures::formatDuration(double seconds) {
   if (seconds < 9.95)
     return QObject::tr("%1 s").arg(seconds, 0, 'f', 1);
-  const auto whole = static_cast<int>(std::lround(std::min(seconds, 1e6)));
-  if (whole < 60)
-    return QObject::tr("%1 s").arg(whole);
-  return QObject::tr("%1 min %2 s").arg(whole / 60).arg(whole % 60);
+  const auto rounded = static_cast<int>(std::lround(std::min(seconds, 1e6)));
+  if (rounded < 60)
+    return QObject::tr("%1 s").arg(rounded);
+  return QObject::tr("%1 min %2 s").arg(rounded / 60).arg(rounded % 60);
 }

@@ -89,18 +89,18 @@ void qSlicerFenestraModuleWidget::connectPanel() {
   connect(panel.render, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::render);
   connect(panel.turn, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::renderTurntable);
   connect(panel.resume, &QPushButton::clicked, this, [this] {
-    m_session->resume(chosen());
+    m_session->resume(chosenRender());
     updateButtons();
   });
   connect(panel.player, &qSlicerFenestraPlayer::frameChanged, this, [this](int frame) {
-    if (chosen())
-      fenestraLogic()->ShowFrame(chosen(), frame);
+    if (chosenRender())
+      fenestraLogic()->ShowFrame(chosenRender(), frame);
   });
   connect(panel.stop, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::stop);
   connect(panel.repeat, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::repeat);
   connect(panel.show, &QPushButton::clicked, this, [this] {
     clearStatus();
-    showResult(chosen());
+    showResult(chosenRender());
   });
   connect(panel.back, &QPushButton::clicked, this, [this] { fenestraLogic()->ShowLayoutBefore(); });
   connect(panel.save, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::save);
@@ -113,14 +113,14 @@ void qSlicerFenestraModuleWidget::connectSession() {
     preview();
   });
   connect(m_session, &qSlicerFenestraSession::learned, this,
-          [this](const qFenestraCapabilities& abilities) {
-            m_panel->setCapabilities(abilities);
+          [this](const qFenestraCapabilities& capabilities) {
+            m_panel->setCapabilities(capabilities);
             m_settings->use(m_settings->node());
           });
   connect(m_session, &qSlicerFenestraSession::materialsTold, m_panel->materials,
           &qSlicerFenestraMaterials::setKnownMaterials);
   connect(m_session, &qSlicerFenestraSession::previewed, this,
-          &qSlicerFenestraModuleWidget::showPicture);
+          &qSlicerFenestraModuleWidget::showPreviewImage);
   connect(m_session, &qSlicerFenestraSession::previewRefused, m_panel->previewState,
           &QLabel::setText);
   connect(m_session, &qSlicerFenestraSession::started, this, [this](Node*) {
@@ -130,7 +130,7 @@ void qSlicerFenestraModuleWidget::connectSession() {
     updateButtons();
   });
   connect(m_session, &qSlicerFenestraSession::reached, this,
-          [this](const QString& words) { m_samplesAndNoise = words; });
+          [this](const QString& text) { m_samplesAndNoise = text; });
   connect(m_session, &qSlicerFenestraSession::progressed, this,
           [this](Node*, double fraction, double seconds) { onProgress(fraction, seconds); });
   connect(m_session, &qSlicerFenestraSession::ended, this, &qSlicerFenestraModuleWidget::onEnded);
@@ -168,8 +168,8 @@ void qSlicerFenestraModuleWidget::onSceneImported() {
   m_sceneIsNew = true;
 }
 
-/// Waits for the end of a batch: before, the panel's boxes do not know the nodes, and opening a
-/// scene closes the old one in the same batch.
+/// Called at the end of a batch: earlier, the panel's boxes lack the nodes, and opening a scene
+/// closes the old one in the same batch.
 void qSlicerFenestraModuleWidget::useNewScene() {
   if (m_sceneIsNew)
     useScene();
@@ -181,10 +181,10 @@ void qSlicerFenestraModuleWidget::useScene() {
   m_sceneIsNew = false;
   const bool isNew = !this->mrmlScene()->GetSingletonNode("Settings", "vtkMRMLFenestraRenderNode");
   Node* settings = fenestraLogic()->GetSettings();
-  if (const std::string shape = isNew ? findViewSize(512.0) : ""; !shape.empty())
-    settings->SetFlag("size", shape);
+  if (const std::string size = isNew ? findViewSize(512.0) : ""; !size.empty())
+    settings->SetFlag("size", size);
   m_settings->use(settings);
-  if (!chosen())
+  if (!chosenRender())
     m_panel->renders->setCurrentNode(fenestraLogic()->GetShownRender());
 }
 
@@ -199,7 +199,7 @@ bool qSlicerFenestraModuleWidget::hasVolume() const {
 
 // ---- renders
 
-Node* qSlicerFenestraModuleWidget::chosen() const {
+Node* qSlicerFenestraModuleWidget::chosenRender() const {
   return Node::SafeDownCast(m_panel->renders->currentNode());
 }
 
@@ -227,14 +227,14 @@ void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
     if (!shown || !shown->GetScene())
       return;
     fenestraLogic()->ShowResult(shown);
-    if (shown == chosen() && shown->IsTurntable())
+    if (shown == chosenRender() && shown->IsTurntable())
       fenestraLogic()->ShowFrame(shown, m_panel->player->frame());
     if (times > 1)
       showResult(shown, times - 1);
   });
 }
 
-/// Writing may take long; a second press ends the render without writing.
+/// Writing the results may take long; a second call ends the render without writing.
 void qSlicerFenestraModuleWidget::stop() {
   m_session->stop();
   if (m_session->isRendering())
@@ -242,7 +242,7 @@ void qSlicerFenestraModuleWidget::stop() {
 }
 
 void qSlicerFenestraModuleWidget::repeat() {
-  Node* render = chosen();
+  Node* render = chosenRender();
   if (!render || !m_settings->node())
     return;
   m_settings->copy(render);
@@ -254,14 +254,14 @@ void qSlicerFenestraModuleWidget::repeat() {
                               : qSlicerFenestraSession::Kind::picture);
 }
 
-void qSlicerFenestraModuleWidget::showPicture(const QImage& picture,
-                                              const qFenestraPreviewImage& what) {
-  m_panel->preview->setPixmap(QPixmap::fromImage(picture));
-  const QString noise = what.noise < 0.0 ? QString() : tr(", noise %1").arg(what.noise, 0, 'g', 2);
+void qSlicerFenestraModuleWidget::showPreviewImage(const QImage& image,
+                                                   const qFenestraPreviewImage& info) {
+  m_panel->preview->setPixmap(QPixmap::fromImage(image));
+  const QString noise = info.noise < 0.0 ? QString() : tr(", noise %1").arg(info.noise, 0, 'g', 2);
   m_panel->previewState->setText(
       tr("Preview: %1 samples per pixel%2, %3")
-          .arg(what.samples)
-          .arg(noise, qSlicerFenestraMeasures::formatDuration(what.seconds)));
+          .arg(info.samples)
+          .arg(noise, qSlicerFenestraMeasures::formatDuration(info.seconds)));
 }
 
 /// Updates at most once per `interval`: Slicer's window redraws slowly without a GPU.
@@ -333,10 +333,10 @@ void qSlicerFenestraModuleWidget::updateButtons() {
     m_panel->previewState->clear();
   }
   m_panel->stop->setEnabled(m_session->isRendering());
-  Node* render = chosen();
-  const bool hasPicture = render && render->GetNodeReference(Node::PictureRole);
-  m_panel->show->setEnabled(hasPicture);
-  m_panel->save->setEnabled(hasPicture);
+  Node* render = chosenRender();
+  const bool hasImage = render && render->GetNodeReference(Node::PictureRole);
+  m_panel->show->setEnabled(hasImage);
+  m_panel->save->setEnabled(hasImage);
   m_panel->back->setEnabled(fenestraLogic()->GetShownRender() != nullptr);
   m_panel->repeat->setEnabled(render != nullptr);
   m_panel->resume->setVisible(m_session->canResume(render));
@@ -345,14 +345,14 @@ void qSlicerFenestraModuleWidget::updateButtons() {
 /// Replaces the displayed image, if any, by the chosen one.
 void qSlicerFenestraModuleWidget::onRenderChosen() {
   showSelected();
-  if (chosen() && fenestraLogic()->GetShownRender())
-    showResult(chosen());
+  if (chosenRender() && fenestraLogic()->GetShownRender())
+    showResult(chosenRender());
 }
 
 /// Shows description, player and measures of the chosen image.
 void qSlicerFenestraModuleWidget::showSelected() {
   updateButtons();
-  Node* render = chosen();
+  Node* render = chosenRender();
   const char* description = render ? render->GetDescription() : nullptr;
   m_panel->description->setText(QString::fromUtf8(description ? description : ""));
   const int frames =
@@ -379,7 +379,7 @@ void qSlicerFenestraModuleWidget::showMeasures(Node* render) {
 // ---- files
 
 void qSlicerFenestraModuleWidget::save() {
-  Node* render = chosen();
+  Node* render = chosenRender();
   const bool isTurntable = render->IsTurntable();
   const QStringList frames = m_session->results().findFrames(render);
   if (isTurntable ? frames.isEmpty() : m_session->results().findFile(render, "png").isEmpty())

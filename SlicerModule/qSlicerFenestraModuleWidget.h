@@ -53,7 +53,7 @@ private slots:
 
 private:
   vtkSlicerFenestraLogic* fenestraLogic() const;
-  vtkMRMLFenestraRenderNode* chosen() const;
+  vtkMRMLFenestraRenderNode* chosenRender() const;
   void connectPanel();
   void connectSession();
   void useScene();
@@ -66,7 +66,7 @@ private:
   void saveAs(const qFenestraCopies& copies);
   void setStatus(const QString& message, const QString& details = {});
   void clearStatus();
-  void showPicture(const QImage& picture, const qFenestraPreviewImage& what);
+  void showPreviewImage(const QImage& image, const qFenestraPreviewImage& info);
   void onProgress(double fraction, double seconds);
   QString toUserText(vtkMRMLFenestraRenderNode* render, qFenestraOutcome::Kind kind) const;
   void onEnded(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);

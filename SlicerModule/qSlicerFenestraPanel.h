@@ -33,7 +33,7 @@ public:
   explicit qSlicerFenestraPanel(QWidget* parent = nullptr);
 
   /// Shows the choices that the renderer supports.
-  void setCapabilities(const qFenestraCapabilities& abilities);
+  void setCapabilities(const qFenestraCapabilities& capabilities);
   /// Adds or removes the view choice of the anatomy preset; data: "preset".
   void offerPresetView(bool chosen);
   /// Shows the withheld flags of the scene; `files`: some of them name files.

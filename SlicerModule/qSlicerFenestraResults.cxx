@@ -23,7 +23,7 @@ QJsonObject readStatistics(const QString& folder) {
   return QJsonDocument::fromJson(file.readAll()).object();
 }
 
-QString statsLine(const QJsonObject& stats) {
+QString formatStatistics(const QJsonObject& stats) {
   return stats.isEmpty()
              ? QString()
              : QObject::tr("%1 samples per pixel, noise %2, %3")
@@ -33,7 +33,7 @@ QString statsLine(const QJsonObject& stats) {
                        stats["seconds"].toObject()["total"].toDouble()));
 }
 
-QString turntableLine(Node* render) {
+QString formatTurntable(Node* render) {
   return QObject::tr("%1 of %2 frames, %3\u00b0")
       .arg(vtkSlicerFenestraLogic::GetNumberOfFrames(render))
       .arg(QString::fromStdString(render->GetFlag("frames")),
@@ -42,7 +42,7 @@ QString turntableLine(Node* render) {
 
 /// Stores a summary and the measures in the node.
 void describe(Node* render, const QJsonObject& stats) {
-  const QString line = render->IsTurntable() ? turntableLine(render) : statsLine(stats);
+  const QString line = render->IsTurntable() ? formatTurntable(render) : formatStatistics(stats);
   render->SetDescription(line.toUtf8().constData());
   const QJsonObject measures = qSlicerFenestraMeasures::selectMeasures(stats);
   if (!measures.isEmpty())

@@ -22,7 +22,7 @@ namespace {
 using Node = vtkMRMLFenestraRenderNode;
 using Ended = qFenestraOutcome::Kind;
 
-qFenestraOutcome failure(const QString& message, const QString& details = {}) {
+qFenestraOutcome toFailure(const QString& message, const QString& details = {}) {
   return {Ended::failed, message, details};
 }
 
@@ -36,7 +36,7 @@ QString toUserText(QString message, const QString& folder) {
   return message;
 }
 
-/// Pauses rendering of the views, which are then drawn once, after all additions.
+/// Pauses rendering of the views, so that they are drawn once after all additions.
 struct RenderPause {
   explicit RenderPause(vtkMRMLApplicationLogic* logic) : application(logic) {
     if (application)
@@ -62,7 +62,7 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
       m_files(std::make_shared<Files>()),
       m_queue(program) {
   m_worker.setMaxThreadCount(1);
-  constexpr int interval = 60; // ms; a drag's changes are merged
+  constexpr int interval = 60; // ms; merges the changes of a mouse drag
   m_refreshTimer.setSingleShot(true);
   m_refreshTimer.setInterval(interval);
   m_preview.setDelay(0);
@@ -86,7 +86,7 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
                     static_cast<double>(m_renderTime.elapsed()) / 1000.0);
   });
   connect(&m_queue, &qFenestraQueue::commented, this,
-          [this](int, const QString& words) { emit reached(words); });
+          [this](int, const QString& text) { emit reached(text); });
   connect(&m_queue, &qFenestraQueue::ended, this, &qSlicerFenestraSession::finishRender);
   connect(&m_capabilityQuery, &qFenestraCapabilityQuery::told, this,
           &qSlicerFenestraSession::learned);
@@ -161,7 +161,7 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
           "The renderer is missing. Install the Fenestra extension again.");
     contents = m_logic->Snapshot(settings, m_files->folder.path().toStdString());
   } catch (const SlicerExport::UserError& error) {
-    emit ended(nullptr, failure(QString::fromUtf8(error.what()), m_program));
+    emit ended(nullptr, toFailure(QString::fromUtf8(error.what()), m_program));
     return nullptr;
   }
   m_preview.stop();
@@ -183,9 +183,9 @@ void qSlicerFenestraSession::submit(int id, const SlicerExport::Contents& conten
   write(contents, [=](const QString& scene, const QString& message) {
     Render& render = m_renders[id];
     if (!message.isEmpty())
-      return endRender(id, failure(tr("The volume could not be written for the renderer. Is the "
-                                      "disk with the temporary files full?"),
-                                   message));
+      return endRender(id, toFailure(tr("The volume could not be written for the renderer. Is the "
+                                        "disk with the temporary files full?"),
+                                     message));
     render.folder = QFileInfo(scene).absolutePath();
     if (render.stopped || !render.node)
       return endRender(id, {Ended::stopped, {}, {}});
@@ -197,9 +197,9 @@ void qSlicerFenestraSession::submit(int id, const SlicerExport::Contents& conten
       if (!isUnchanged && tries > 0)
         return submit(id, now, withSurface, tries - 1);
     } catch (const SlicerExport::UserError& error) {
-      return endRender(id, failure(QString::fromUtf8(error.what())));
+      return endRender(id, toFailure(QString::fromUtf8(error.what())));
     }
-    m_queue.add({id, arguments(render.node, scene, withSurface), render.folder});
+    m_queue.add({id, makeArguments(render.node, scene, withSurface), render.folder});
   });
 }
 
@@ -224,8 +224,8 @@ void qSlicerFenestraSession::waitFor(Node* node) {
 }
 
 /// Passes all flags on the command line, which the renderer trusts more than a scene.
-QStringList qSlicerFenestraSession::arguments(Node* render, const QString& scene,
-                                              bool withSurface) const {
+QStringList qSlicerFenestraSession::makeArguments(Node* render, const QString& scene,
+                                                  bool withSurface) const {
   QStringList all = render->IsTurntable() ? QStringList{"turntable", scene} : QStringList{scene};
   for (const std::string& argument : vtkSlicerFenestraLogic::GetArguments(render, withSurface))
     all << QString::fromStdString(argument);
@@ -243,7 +243,7 @@ void qSlicerFenestraSession::resume(Node* turntable) {
   const int id = ++m_lastId;
   const QString folder = m_results.findFolder(turntable);
   m_renders[id] = {turntable, m_files, folder};
-  m_queue.add({id, arguments(turntable, folder + "/scene.mrml", false), folder});
+  m_queue.add({id, makeArguments(turntable, folder + "/scene.mrml", false), folder});
 }
 
 void qSlicerFenestraSession::stop() {
@@ -263,7 +263,7 @@ void qSlicerFenestraSession::closeScene() {
     m_queue.stop(id); // discards the results of the current render
   }
   m_files = std::make_shared<Files>(); // the old files are removed with their last process
-  m_shownData.clear();
+  m_previewKey.clear();
   m_previewFolder.clear();
 }
 
@@ -288,7 +288,7 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
     }
     runInMainThread([this, id, outcome, result, message] {
       if (!message.isEmpty())
-        return endRender(id, failure(tr("The image could not be read. Press Repeat."), message));
+        return endRender(id, toFailure(tr("The image could not be read. Press Repeat."), message));
       const auto paused = std::make_shared<RenderPause>(m_logic->GetMRMLApplicationLogic());
       addResult(id, outcome, [this, result, paused](Node* node, int step) {
         m_logic->AddResult(node, *result, step);
@@ -339,12 +339,12 @@ void qSlicerFenestraSession::makeSample(
   if (!m_sample)
     m_sample = std::make_unique<qFenestraFolder>(QDir::tempPath(), folderPrefix);
   const QString folder = m_sample->filePath("knee");
-  auto* maker = new qFenestraProgram(this);
-  connect(maker, &qFenestraProgram::ended, this,
-          [maker, folder, then](const qFenestraOutcome& outcome) {
-            maker->deleteLater();
-            const bool made = outcome.kind == Ended::done;
-            then(made ? folder + "/knee.mrml" : QString(), outcome.message + outcome.details);
+  auto* child = new qFenestraProgram(this);
+  connect(child, &qFenestraProgram::ended, this,
+          [child, folder, then](const qFenestraOutcome& outcome) {
+            child->deleteLater();
+            const bool isDone = outcome.kind == Ended::done;
+            then(isDone ? folder + "/knee.mrml" : QString(), outcome.message + outcome.details);
           });
-  maker->run(m_program, {"phantom", "knee", "--output", folder}, m_sample->path());
+  child->run(m_program, {"phantom", "knee", "--output", folder}, m_sample->path());
 }

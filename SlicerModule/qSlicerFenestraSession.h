@@ -40,7 +40,7 @@ public:
   ~qSlicerFenestraSession() override;
 
   enum class Kind { picture, turntable };
-  /// Adds a render of the settings to the scene and to the queue. Null: an input is missing, and
+  /// Adds a render of the settings to the scene and to the queue. Null: an input is missing;
   /// `ended` reports the reason.
   vtkMRMLFenestraRenderNode* render(vtkMRMLFenestraRenderNode* settings, Kind kind = Kind::picture);
   vtkMRMLFenestraRenderNode* start(vtkMRMLFenestraRenderNode* settings, bool turntable) override;
@@ -79,8 +79,7 @@ public slots:
   void refresh();
 
 signals:
-  /// Result of queryCapabilities().
-  void learned(const qFenestraCapabilities& abilities);
+  void learned(const qFenestraCapabilities& capabilities);
   void materialsTold(const qFenestraMaterials& materials);
   void previewed(const QImage& picture, const qFenestraPreviewImage& what);
   /// `message`: a sentence for the user. The last preview stays visible.
@@ -89,7 +88,7 @@ signals:
   /// `fraction`: finished fraction, 0 to 1; `seconds`: elapsed time.
   void progressed(vtkMRMLFenestraRenderNode* render, double fraction, double seconds);
   /// Samples and noise of the current render, as text.
-  void reached(const QString& words);
+  void reached(const QString& text);
   /// The process of the current render has ended; its result is not read yet.
   void renderStopped();
   /// The render's result, if any, is in the scene.
@@ -114,8 +113,8 @@ private:
   void runInMainThread(const std::function<void()>& job);
   void write(const SlicerExport::Contents& contents,
              const std::function<void(const QString& scene, const QString& failure)>& then);
-  QStringList arguments(vtkMRMLFenestraRenderNode* render, const QString& scene,
-                        bool withSurface) const;
+  QStringList makeArguments(vtkMRMLFenestraRenderNode* render, const QString& scene,
+                            bool withSurface) const;
   void submit(int id, const SlicerExport::Contents& contents, bool withSurface, int tries = 3);
   void finishRender(int id, const qFenestraOutcome& outcome);
   void addResult(int id, const qFenestraOutcome& outcome,
@@ -125,8 +124,8 @@ private:
   void updatePreview();
   using Flags = std::map<std::string, std::string>;
   void startPreview(const SlicerExport::Contents& contents, const Flags& flags);
-  Flags previewFlags(Flags flags, const SlicerExport::Contents& contents) const;
-  QString propertyFile(const SlicerExport::Contents& contents) const;
+  Flags adaptFlags(Flags flags, const SlicerExport::Contents& contents) const;
+  QString writePropertyFile(const SlicerExport::Contents& contents) const;
   void sendToPreview(const QJsonObject& flags);
   void showPreview(const qFenestraPreviewImage& picture);
 
@@ -148,9 +147,9 @@ private:
   int m_lastId = 0;
 
   qFenestraPreview m_preview;
-  QTimer m_refreshTimer; ///< merges changes in quick succession
+  QTimer m_refreshTimer; ///< merges rapid changes
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_previewed;
-  std::string m_shownData; ///< key of the data in the preview's scene
+  std::string m_previewKey; ///< key of the data in the preview's scene
   QString m_previewFolder;
   QJsonObject m_sentFlags;
   bool m_starting = false;

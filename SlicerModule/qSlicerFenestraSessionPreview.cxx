@@ -18,7 +18,7 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 
-/// Key of the data that require a new preview when they change: volume, segmentation, transforms,
+/// Key of the data whose change requires another preview process: volume, segmentation, transforms,
 /// crop box.
 std::string makeDataKey(const SlicerExport::Contents& contents) {
   std::ostringstream text;
@@ -34,12 +34,12 @@ std::string makeDataKey(const SlicerExport::Contents& contents) {
 }
 
 /// Size with the image's aspect ratio, at most 256 x 256, for speed.
-std::string previewSize(const std::string& size) {
+std::string scaleToPreview(const std::string& size) {
   const QStringList words = QString::fromStdString(size).split('x');
-  const QSize one = QSize(words.value(0, "512").toInt(), words.value(1, "512").toInt())
-                        .scaled(256, 256, Qt::KeepAspectRatio)
-                        .expandedTo({16, 16});
-  return QString("%1x%2").arg(one.width()).arg(one.height()).toStdString();
+  const QSize scaled = QSize(words.value(0, "512").toInt(), words.value(1, "512").toInt())
+                           .scaled(256, 256, Qt::KeepAspectRatio)
+                           .expandedTo({16, 16});
+  return QString("%1x%2").arg(scaled.width()).arg(scaled.height()).toStdString();
 }
 
 } // namespace
@@ -65,8 +65,8 @@ void qSlicerFenestraSession::updatePreview() {
   try {
     const SlicerExport::Contents contents =
         m_logic->Snapshot(m_previewed, m_files->folder.path().toStdString());
-    const Flags flags = previewFlags(m_logic->GetFlags(m_previewed), contents);
-    if (!m_preview.running() || makeDataKey(contents) != m_shownData)
+    const Flags flags = adaptFlags(m_logic->GetFlags(m_previewed), contents);
+    if (!m_preview.running() || makeDataKey(contents) != m_previewKey)
       return startPreview(contents, flags);
     sendToPreview(qFenestraPreview::toJson(flags));
   } catch (const SlicerExport::UserError& error) {
@@ -77,7 +77,7 @@ void qSlicerFenestraSession::updatePreview() {
 void qSlicerFenestraSession::startPreview(const SlicerExport::Contents& contents,
                                           const Flags& flags) {
   m_starting = true;
-  m_shownData = makeDataKey(contents);
+  m_previewKey = makeDataKey(contents);
   write(contents, [this, flags, files = m_files](const QString& scene, const QString& message) {
     m_starting = false;
     if (!message.isEmpty() || !m_previewed)
@@ -97,21 +97,21 @@ void qSlicerFenestraSession::startPreview(const SlicerExport::Contents& contents
 
 /// The node's flags, adapted to a preview.
 std::map<std::string, std::string>
-qSlicerFenestraSession::previewFlags(Flags flags, const SlicerExport::Contents& contents) const {
+qSlicerFenestraSession::adaptFlags(Flags flags, const SlicerExport::Contents& contents) const {
   flags = SlicerExport::filterMaterialFlags(contents.segmentation.segments, std::move(flags));
   for (const char* name : {"seconds", "seed", "samples"})
     flags.erase(name);
   for (const std::string& name : Node::GetTurntableFlagNames())
     flags.erase(name);
   flags["noise"] = "0.03";
-  flags["size"] = previewSize(flags["size"]);
+  flags["size"] = scaleToPreview(flags["size"]);
   if (flags.count("transfer") == 0 && flags.count("preset") == 0 && !contents.property.empty())
-    flags["transfer"] = propertyFile(contents).toStdString();
+    flags["transfer"] = writePropertyFile(contents).toStdString();
   return flags;
 }
 
-/// Writes the transfer function to a file named by its hash, so that a changed one is another file.
-QString qSlicerFenestraSession::propertyFile(const SlicerExport::Contents& contents) const {
+/// Writes the transfer function to a file named by its hash, so that a change gives another file.
+QString qSlicerFenestraSession::writePropertyFile(const SlicerExport::Contents& contents) const {
   const QByteArray text = QByteArray::fromStdString(contents.property);
   const QString name = QCryptographicHash::hash(text, QCryptographicHash::Sha1).toHex();
   QFile file(m_files->folder.filePath(name + QString::fromStdString(contents.propertyExtension)));

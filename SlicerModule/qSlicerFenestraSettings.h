@@ -57,7 +57,7 @@ private:
   void connectPanel();
   void chooseDefaults();
   bool hasPreset() const;
-  QList<qSlicerFenestraSegment> focusSegments() const;
+  QList<qSlicerFenestraSegment> listFocusSegments() const;
   void observe(vtkWeakPointer<vtkMRMLNode>& watched, vtkMRMLNode* node);
   void observeCamera();
   void observePlane();

@@ -12,7 +12,6 @@ class QComboBox;
 class QFormLayout;
 class QWidget;
 
-/// Helpers of the panel's widgets.
 namespace qSlicerFenestraWidgets {
 
 /// Item of a combo box; `data` is a flag's value.

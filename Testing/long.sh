@@ -13,11 +13,11 @@
 #   faults        every fault of Testing/FaultInjection, and 20,000 corrupted files
 #   checkpoints   200 kills of a render with a checkpoint file, an image merged from 16 shards, and images
 #                 by up to 7 ranks of mpirun
-#   batch         a batch of 12 cases, killed half way and resumed; jobs in a Slurm of this machine
+#   batch         a batch of 12 cases, killed halfway and resumed; jobs on a single-node Slurm cluster
 #   paths         CPU instructions per path, compared with Testing/Benchmarks/Report
 #   package       the archive in a root with only Busybox, in Debian 11, in the extension's package; a
 #                 reproducible build; the Debian package in lintian
-# Only if named:
+# Only if named as an argument:
 #   fuzz          10^6 executions of every fuzz target, at most an hour each, and 10^4 corrupted files
 #                 through the sandboxed reader of DICOM and transform files
 #   boundary      the boundary of the clipping surface on subpixel rays
@@ -41,8 +41,8 @@ store() {
   return $status
 }
 
-# counts LOG START: prints CSV cells: tests passed, skipped, failed, and seconds since START.
-counts() {
+# print_counts LOG START: prints CSV cells: tests passed, skipped, failed, and seconds since START.
+print_counts() {
   printf '%s,%s,%s,%s' "$(grep -c '   Passed ' "$1")" "$(grep -c '\*\*\*Skipped' "$1")" \
     "$(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$1")" $((SECONDS - $2))
 }
@@ -58,7 +58,7 @@ run_labels() {
     start=$SECONDS
     ctest --test-dir "$folder" -L "^$label\$" -j"$(nproc)" \
       --output-on-failure >"$log" 2>&1 || say "some $label tests failed: see $log" >&2
-    printf '%s,%s\n' "$label" "$(counts "$log" "$start")"
+    printf '%s,%s\n' "$label" "$(print_counts "$log" "$start")"
   done
 }
 
@@ -70,13 +70,13 @@ stage_accuracy() {
     statistical stress regression
 }
 
-# machine_has SET: true if programs can be pinned to an instruction set on this machine.
-machine_has() {
+# has_instructions SET: true if programs can be pinned to an instruction set on this machine.
+has_instructions() {
   FENESTRA_INSTRUCTIONS=$1 "$top/build/bin/MatrixTests" --gtest_list_tests >/dev/null 2>&1
 }
 
-# seed_row SET SEED: writes a row of the table to $rows/SET-SEED.
-seed_row() {
+# write_seed_row SET SEED: writes a row of the table to $rows/SET-SEED.
+write_seed_row() {
   local passed=yes out
   out=$(FENESTRA_INSTRUCTIONS=$1 FENESTRA_SEED=$2 "$top/build/bin/MatrixTests" --gtest_filter='*simd') || passed=no
   printf '%s,%s,%s%s\n' "$1" "$2" \
@@ -98,22 +98,22 @@ stage_seeds() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
   local rows name
   rows=$(mktemp -d)
-  export -f seed_row
+  export -f write_seed_row
   for name in "${sets[@]}"; do
-    machine_has "$name" || continue
-    seq 20 | top=$top rows=$rows xargs -P "$(nproc)" -I{} bash -c "seed_row $name {}"
+    has_instructions "$name" || continue
+    seq 20 | top=$top rows=$rows xargs -P "$(nproc)" -I{} bash -c "write_seed_row $name {}"
   done
   store seeds.csv print_seeds "$rows"
   rm -r "$rows"
 }
 
-# Builds the program of run_mutations.
+# build_mutations: builds the program of run_mutations.
 build_mutations() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
   cmake --build "$top/build" --target MutationTests
 }
 
-# run_mutations LOG: searches all mutations, on FENESTRA_INSTRUCTIONS if that is set.
+# run_mutations LOG: tests all mutations, on FENESTRA_INSTRUCTIONS if that is set.
 run_mutations() {
   "$top/build/bin/MutationTests" >"$1" 2>&1
 }
@@ -129,12 +129,12 @@ run_instructions() {
   printf 'instruction set,passed,skipped,failed,seconds,mutations found\n'
   local name start log row
   for name in "${sets[@]}"; do
-    machine_has "$name" || continue
+    has_instructions "$name" || continue
     log=$logs/instructions-$name.log
     start=$SECONDS
     FENESTRA_INSTRUCTIONS=$name ctest --test-dir "$top/build" -L '^statistical$' -j"$(nproc)" \
       --output-on-failure >"$log" 2>&1 || say "some tests failed on $name: see $log" >&2
-    row=$(counts "$log" "$start")
+    row=$(print_counts "$log" "$start")
     log=$logs/mutations-$name.log
     FENESTRA_INSTRUCTIONS=$name run_mutations "$log" || say "some mutations were not found on $name: see $log" >&2
     printf '%s,%s,%s\n' "$name" "$row" "$(sed -n 's/^mutations found: //p' "$log")"
@@ -157,9 +157,9 @@ stage_asan() {
     store address-sanitizer.csv run_labels "$top/build-asan-ubsan" "${labels[@]}"
 }
 
-# Builds oneTBB with ThreadSanitizer, which cannot see the synchronization of Debian's library. Prints its
+# build_tbb: builds oneTBB with ThreadSanitizer, which cannot see the synchronization of Debian's library. Prints its
 # folder.
-instrumented_tbb() {
+build_tbb() {
   local folder=$top/build-tsan/onetbb
   if [ ! -e "$folder/libtbb.so" ]; then
     mkdir -p "$folder/source"
@@ -180,7 +180,7 @@ instrumented_tbb() {
 stage_tsan() {
   (cd "$top" && cmake --preset tsan >/dev/null && cmake --build build-tsan)
   local tbb
-  tbb=$(instrumented_tbb)
+  tbb=$(build_tbb)
   LD_LIBRARY_PATH=$tbb TSAN_OPTIONS=halt_on_error=1 FENESTRA_BRIEF=4 FENESTRA_COMBINATIONS=24 \
     store thread-sanitizer.csv run_labels "$top/build-tsan" "${labels[@]}"
 }
@@ -213,7 +213,7 @@ stage_faults() {
 stage_checkpoints() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
   "$top/Testing/Cli/kills.sh" "$top/build/bin/fenestra" 200 150 >"$logs/checkpoints.log" 2>&1 ||
-    say "a killed render does not resume correctly: $logs/checkpoints.log"
+    say "a killed render resumes incorrectly: $logs/checkpoints.log"
   FENESTRA_LONG=1 "$top/build/bin/CommandTests" --gtest_filter='MergeCommand.*' >>"$logs/checkpoints.log" 2>&1 ||
     say "merged shards differ from the image: $logs/checkpoints.log"
   local status=0
@@ -222,7 +222,7 @@ stage_checkpoints() {
   case $status in
     0) ;;
     77) tail -n 1 "$logs/ranks.log" ;;
-    *) say "ranks of mpirun do not make the image of one process: $logs/ranks.log" ;;
+    *) say "images by several ranks differ from that of one process: $logs/ranks.log" ;;
   esac
 }
 

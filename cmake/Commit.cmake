@@ -1,6 +1,6 @@
-# Writes FILE from TEMPLATE with @COMMIT@, @COMMIT_DATE@ (2026-11-26) and @COMMIT_TIME@ (for mails) of the checkout
-# SOURCE, unless FILE is up to date. Outside git, the commit is unknown, and the time is SOURCE_DATE_EPOCH of the
-# environment, or now.
+# Writes FILE from TEMPLATE with @COMMIT@, @COMMIT_DATE@ (2026-11-26) and @COMMIT_TIME@ (as in a mail header) of the
+# checkout SOURCE, unless FILE is up to date. Outside git, the commit is "unknown", and the time is the environment
+# variable SOURCE_DATE_EPOCH, or now.
 # usage: cmake -DSOURCE=FOLDER -DGIT=PROGRAM -DTEMPLATE=FILE.in -DFILE=FILE -P Commit.cmake
 set(COMMIT unknown)
 if(GIT AND EXISTS "${SOURCE}/.git") # not the repository of a parent folder

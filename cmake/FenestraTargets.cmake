@@ -29,8 +29,8 @@ endif()
 
 # fenestra_simd_sources(sources...): sources that Highway compiles once per instruction set. A multiplication
 # and an addition are fused only where the source says so: results must not depend on inlining.
-# Sanitizer builds emulate the lanes, so that the reads of gathers are checked, and omit the undefined
-# behavior checks of clang here, which would take a quarter of an hour to compile.
+# Sanitizer builds emulate the SIMD lanes, so that the reads of gathers are checked. With clang they omit
+# UndefinedBehaviorSanitizer here, which would take a quarter of an hour to compile.
 function(fenestra_simd_sources)
   set(options -ffp-contract=off)
   if(FENESTRA_SANITIZERS)
@@ -70,12 +70,12 @@ function(fenestra_library folder)
     get_filename_component(file ${header} NAME)
     file(CREATE_LINK "${header}" "${root}/${folder}/${file}" SYMBOLIC)
     if(NOT file MATCHES "-inl.h$")
-      list(APPEND alone "${root}/${folder}/${file}")
+      list(APPEND standalone "${root}/${folder}/${file}")
     endif()
   endforeach()
   target_include_directories(${target} PUBLIC "${root}")
   # With CMAKE_VERIFY_INTERFACE_HEADER_SETS, all_verify_interface_header_sets compiles each header on its own.
-  target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS "${root}" FILES ${alone})
+  target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS "${root}" FILES ${standalone})
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} fenestra_sanitizers
     PRIVATE ${arg_PRIVATE} fenestra_warnings)
   if(folder MATCHES "^(io|files|scene|program)")

@@ -17,7 +17,7 @@ struct AliasTables {
   struct Slot {
     float threshold, alias;
   };
-  /// Minimum, so that the remaining bits of a word fit into a float's 24.
+  /// Minimum, so that the remaining bits of a word fit into the 24 bits of a float.
   static constexpr int minBits = 8;
 
   int bits = minBits;

@@ -22,7 +22,7 @@ inline Affine checkAffine(const Affine& map, const MakeError& makeError) {
   if (!((lengths > 1.0 / maxScale).all() && (lengths < maxScale).all() &&
         (map.translation().array().abs() < maxScale).all() &&
         std::abs(map.linear().normalizedColumns().determinant()) > minDeterminant))
-    throw makeError("must be invertible, with scales in 1e-9 to 1e9 and translations below 1e9 mm");
+    throw makeError("must be invertible, with scales 1e-9 to 1e9 and translations below 1e9 mm");
   return map;
 }
 

@@ -26,7 +26,7 @@ private:
   ErrorKind m_kind;
 };
 
-// The line's pieces are those of concat: texts, paths, integers.
+// Parts are those of concat(): texts, paths and integers.
 template <typename... Parts>
 Error usageError(const Parts&... line) {
   return {ErrorKind::usage, concat(line...)};

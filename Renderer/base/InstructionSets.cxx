@@ -11,7 +11,7 @@ namespace {
 
 /// Bits of the instruction sets that both program and machine support, pinned or not; the lowest
 /// bit is the best set.
-std::int64_t supportedSets() {
+std::int64_t findSupportedSets() {
   static const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
   return supported;
 }
@@ -20,7 +20,7 @@ std::int64_t supportedSets() {
 
 std::vector<std::string> instructionSets() {
   std::vector<std::string> names;
-  for (std::int64_t left = supportedSets(); left != 0; left &= left - 1)
+  for (std::int64_t left = findSupportedSets(); left != 0; left &= left - 1)
     names.emplace_back(hwy::TargetName(left & -left));
   return names;
 }
@@ -31,7 +31,7 @@ std::string instructionSet() {
 }
 
 void useInstructionSet(const std::string& name) {
-  for (std::int64_t left = supportedSets(); left != 0; left &= left - 1)
+  for (std::int64_t left = findSupportedSets(); left != 0; left &= left - 1)
     if (name == hwy::TargetName(left & -left))
       return hwy::SetSupportedTargetsForTest(left & -left);
   throw usageError("FENESTRA_INSTRUCTIONS: " + name +

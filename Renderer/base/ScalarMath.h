@@ -34,11 +34,11 @@ inline Float select(LaneMask m, Float yes, Float no) {
 inline Float zeroUnless(LaneMask m, Float yes) {
   return m.value ? yes : 0.0;
 }
-/// b where either is NaN.
+/// Returns b if a or b is NaN.
 inline Float min(Float a, Float b) {
   return a < b ? a : b;
 }
-/// b where either is NaN.
+/// Returns b if a or b is NaN.
 inline Float max(Float a, Float b) {
   return a > b ? a : b;
 }

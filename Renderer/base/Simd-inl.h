@@ -1,7 +1,7 @@
 // SIMD types with operators, so that SIMD code reads like scalar arithmetic: Float, Int and UInt
-// hold a number per lane, LaneMask a bool. Scalar operands apply to every lane. Only fma() and its
-// like fuse a multiplication with an addition. Compiled once per instruction set: include after
-// Highway's foreach_target.h.
+// hold a number per lane, LaneMask a bool. Scalar operands apply to every lane. Only fma(), fms()
+// and fnma() fuse a multiplication with an addition. Compiled once per instruction set: include
+// after Highway's foreach_target.h.
 
 #if defined(FENESTRA_SIMD_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_SIMD_INL_H
@@ -97,9 +97,9 @@ struct Simd {
   friend HWY_INLINE LaneMask operator>(Simd a, Simd b) { return hn::Gt(a.v, b.v); }
   friend HWY_INLINE LaneMask operator>=(Simd a, Simd b) { return hn::Ge(a.v, b.v); }
   friend HWY_INLINE LaneMask operator==(Simd a, Simd b) { return hn::Eq(a.v, b.v); }
-  /// b where either is NaN.
+  /// Returns b in lanes where a or b is NaN.
   friend HWY_INLINE Simd min(Simd a, Simd b) { return hn::Min(a.v, b.v); }
-  /// b where either is NaN.
+  /// Returns b in lanes where a or b is NaN.
   friend HWY_INLINE Simd max(Simd a, Simd b) { return hn::Max(a.v, b.v); }
 };
 

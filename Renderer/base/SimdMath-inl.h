@@ -52,7 +52,7 @@ HWY_INLINE Float3 mapDirection(const AffineRows& map, const Float3& d) {
   return {row(map[0]), row(map[1]), row(map[2])};
 }
 
-/// Loads from three arrays of a structure of arrays, from index i on.
+/// Loads a vector per lane from three arrays, starting at index i.
 template <typename Columns>
 HWY_INLINE Float3 load3(const Columns& columns, std::size_t i) {
   return {load(&columns[0][i]), load(&columns[1][i]), load(&columns[2][i])};
@@ -155,11 +155,11 @@ HWY_INLINE CosineSine cosSinTurns(Float turns) {
   const LaneMask swapped = odd == 1U;
   const UInt sineSign = shiftLeft<30>(quadrant & 2U);
   const UInt cosineSign = sineSign ^ shiftLeft<31>(odd);
-  const auto signedBy = [](Float value, UInt sign) {
+  const auto applySign = [](Float value, UInt sign) {
     return bitsAsFloat(bitsAsUInt(value) ^ sign);
   };
-  return {signedBy(select(swapped, sine, cosine), cosineSign),
-          signedBy(select(swapped, cosine, sine), sineSign)};
+  return {applySign(select(swapped, sine, cosine), cosineSign),
+          applySign(select(swapped, cosine, sine), sineSign)};
 }
 
 /// Angle of the point (x, y) in turns from the x axis, in [-1/2, 1/2], to 1e-7; 0 at the origin.

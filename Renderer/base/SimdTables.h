@@ -7,7 +7,7 @@
 
 namespace fenestra {
 
-/// Eight byte indices, the first in the lowest byte, per set of eight lanes.
+/// Per set of eight lanes: eight indices of one byte each, the first in the lowest byte.
 using LaneTable = std::array<std::uint64_t, 256>;
 
 /// Indices of the lanes in the set, ascending; then zeros.

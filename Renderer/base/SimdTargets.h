@@ -1,5 +1,5 @@
 #pragma once
-// Instruction sets that SIMD code is compiled for: three, and the baseline of every machine.
+// SIMD code is compiled for three instruction sets and for the baseline, which every machine has.
 // Include before Highway's foreach_target.h.
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)

@@ -35,7 +35,7 @@ std::string concat(const Parts&... parts) {
 /// Number with at most `digits` significant digits, like printf's %.6g.
 std::string toString(double x, int digits = 6);
 
-/// Items as text, with `separator` between them; after `maxItems` of them, `rest` instead.
+/// Items as text, with `separator` between them; `rest` replaces those after the first `maxItems`.
 template <typename Items, typename ToText = std::identity>
 std::string join(const Items& items, std::string_view separator, ToText&& toText = {},
                  std::size_t maxItems = std::numeric_limits<std::size_t>::max(),

@@ -86,9 +86,9 @@ public:
   constexpr T mean() const { return sum() / T(N); }
   constexpr T maxCoeff() const { return *std::max_element(begin(), end()); }
   constexpr T minCoeff() const { return *std::min_element(begin(), end()); }
-  /// True if |x| <= most for every component x.
-  bool isZero(T most = T(1e-12)) const {
-    return std::all_of(begin(), end(), [most](T part) { return std::abs(part) <= most; });
+  /// True if |x| <= tolerance for every component x.
+  bool isZero(T tolerance = T(1e-12)) const {
+    return std::all_of(begin(), end(), [tolerance](T part) { return std::abs(part) <= tolerance; });
   }
 
   constexpr Self cwiseMax(const Self& o) const {

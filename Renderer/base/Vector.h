@@ -30,7 +30,7 @@ struct Interval {
   bool isEmpty() const { return !(begin < end); }
 };
 
-/// Shortest interval that contains both; {infinity, -infinity} adds nothing.
+/// Shortest interval that contains both; {infinity, -infinity} is the neutral element.
 inline Interval enclose(const Interval& a, const Interval& b) {
   return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
 }

@@ -8,7 +8,7 @@
 namespace fenestra {
 namespace {
 
-/// XYZ of Rec. 709 (IEC 61966-2-1), and that of its white.
+/// Linear Rec. 709 to XYZ (IEC 61966-2-1), and the XYZ of its white point.
 constexpr Mat3 toXyz =
     Mat3::FromRows({0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505});
 constexpr Vec3 white(0.9505, 1.0, 1.089);
@@ -26,7 +26,7 @@ double pow7(double x) {
   return std::pow(x, 7.0);
 }
 
-/// Chroma and hue, with a* scaled near gray (eq. 2 to 7).
+/// Chroma and hue, with a* scaled near gray (Sharma et al., eq. 2 to 7).
 struct AdjustedHue {
   double C, h;
 
@@ -65,10 +65,10 @@ Rgb simulateVision(ColorVision vision, const Rgb& linear) {
     return linear;
   const Rows& rows = matrices[static_cast<std::size_t>(vision) - 1];
   const Vec3 color(linear[0], linear[1], linear[2]);
-  Rgb seen;
+  Rgb simulated;
   for (int c = 0; c < 3; ++c)
-    seen[c] = std::clamp(rows[static_cast<std::size_t>(c)].dot(color), 0.0, 1.0);
-  return seen;
+    simulated[c] = std::clamp(rows[static_cast<std::size_t>(c)].dot(color), 0.0, 1.0);
+  return simulated;
 }
 
 Lab toLab(const Rgb& linear) {

@@ -10,8 +10,8 @@ namespace fenestra {
 
 /// Statistics of z = (a - b) / sqrt(se_a^2 + se_b^2) over pixels and R, G, B. Two independent
 /// unbiased renders with correct standard errors give mean 0 and deviation 1. Excludes values whose
-/// standard errors are both 0, and equal values with one standard error of 0 (background); 0 and
-/// equal mean up to float rounding.
+/// standard errors are both 0, and equal values with one standard error of 0 (background), all up
+/// to float rounding.
 struct ZStatistics {
   std::size_t count = 0; ///< values in the statistics
   double mean = 0.0, deviation = 0.0;

@@ -58,9 +58,8 @@ struct ImagePair {
   bool isEqual(std::size_t c, std::size_t i) const {
     return std::abs(difference(c, i)) <= 2.0 * rounding(c, i);
   }
-  /// True if the value carries no statistical information: both errors are 0, or one is 0 and the
-  /// values are equal (background, whatever error one renderer states), up to float rounding.
-  /// Excluded from z.
+  /// True for values that z excludes, since they carry no statistical information: both errors are
+  /// 0, or one is 0 and the values are equal (background); up to float rounding.
   bool isUninformative(std::size_t c, std::size_t i) const {
     const bool exactA = std::abs((*errorA[c])[i]) <= rounding(c, i);
     const bool exactB = std::abs((*errorB[c])[i]) <= rounding(c, i);

@@ -21,7 +21,7 @@ class Tiles {
 public:
   static constexpr int size = 8;
 
-  /// Columns left to right - 1 and rows top to bottom - 1.
+  /// Columns [left, right) and rows [top, bottom).
   struct Tile {
     int left, top, right, bottom;
   };

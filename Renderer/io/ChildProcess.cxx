@@ -24,9 +24,9 @@ namespace {
   if (::getppid() != parent) // the parent died before PR_SET_PDEATHSIG
     ::_exit(1);
   ::setpgid(0, 0);
-  const int nothing = ::open("/dev/null", O_RDWR);
-  ::dup2(nothing, STDIN_FILENO);
-  ::dup2(nothing, STDOUT_FILENO);
+  const int devNull = ::open("/dev/null", O_RDWR);
+  ::dup2(devNull, STDIN_FILENO);
+  ::dup2(devNull, STDOUT_FILENO);
   ::dup2(errors, STDERR_FILENO);
   ::closefrom(STDERR_FILENO + 1);
   for (int signal = 1; signal < NSIG; ++signal) {
@@ -48,7 +48,7 @@ namespace {
 
 ChildProcess::ChildProcess(std::vector<std::string> arguments)
     : m_errors(::memfd_create("errors", MFD_CLOEXEC)) {
-  const SelfArguments words(std::move(arguments));
+  const SelfArguments selfArguments(std::move(arguments));
   const pid_t parent = ::getpid();
   ::signal(SIGCHLD, SIG_DFL); // if it were ignored, the child's status would be lost
   sigset_t all, before;
@@ -56,7 +56,7 @@ ChildProcess::ChildProcess(std::vector<std::string> arguments)
   ::pthread_sigmask(SIG_BLOCK, &all, &before);
   m_id = m_errors.isOpen() ? ::fork() : -1;
   if (m_id == 0)
-    execProgram(parent, *m_errors, words.get());
+    execProgram(parent, *m_errors, selfArguments.get());
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (m_id < 0)
     throw outputError("memory", "cannot start another process; close other programs");

@@ -1,5 +1,5 @@
 #pragma once
-// Runs this program again as a child process: a crash there ends only that piece of work.
+// Runs this program again as a child process, so that a crash there does not end this process.
 
 #include "io/Descriptor.h"
 

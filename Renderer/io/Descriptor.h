@@ -40,7 +40,7 @@ auto retryOnEintr(Call&& systemCall) {
   return result;
 }
 
-/// Tries to lock a file. False: another process holds the lock. Also true on disks without locks.
+/// Tries to lock a file. False if another process holds the lock; true without lock support.
 inline bool tryLock(const Descriptor& file) {
   return retryOnEintr([&] { return ::flock(*file, LOCK_EX | LOCK_NB); }) == 0 ||
          errno != EWOULDBLOCK;

@@ -1,5 +1,5 @@
 #pragma once
-// Digest of bytes, the same on every machine. It detects damage and change, but no attack.
+// Digest of bytes, the same on every machine. Not cryptographic: detects damage, not tampering.
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
-// Folders that this process creates. They are removed with their object, or by a signal that ends
-// the process.
+// Folders that this process creates. They are removed by the destructor of their object, or when a
+// signal ends the process.
 
 #include "io/Descriptor.h"
 #include "io/TempFiles.h"
@@ -46,7 +46,7 @@ private:
   std::list<TempFileGuard> m_entries; ///< the folder, then its content in order of creation
 };
 
-/// Removes private folders that killed runs of this user have left, which no process has locked.
+/// Removes private folders that killed runs of this user have left and no process has locked.
 /// Ignores failures.
 void removeStaleFolders();
 

@@ -40,11 +40,11 @@ std::optional<FileId> getFileId(int folder, const char* path, int flags) {
   struct statx status = {};
   if (::statx(folder, path, flags, STATX_INO | STATX_BTIME, &status) != 0)
     return std::nullopt;
-  const bool isBorn = (status.stx_mask & STATX_BTIME) != 0;
+  const bool hasBirthTime = (status.stx_mask & STATX_BTIME) != 0;
   return FileId{std::uint64_t{status.stx_dev_major} << 32 | status.stx_dev_minor, status.stx_ino,
-                isBorn ? std::int64_t{status.stx_btime.tv_sec} * 1'000'000'000 +
-                             status.stx_btime.tv_nsec
-                       : 0};
+                hasBirthTime ? std::int64_t{status.stx_btime.tv_sec} * 1'000'000'000 +
+                                   status.stx_btime.tv_nsec
+                             : 0};
 }
 
 /// Canonical folder to which this thread's reads are confined; null: not confined. A pointer, since
@@ -93,8 +93,8 @@ void requireFile(const std::filesystem::path& path, const std::string& hint,
                  std::uint64_t maxBytes) {
   if (hasZeroByte(path))
     throw inputError(path.c_str(),
-                     "is followed by a zero byte in the file that names it; write that file again");
-  // Checked first: access to an automount or a server would reveal the read to others.
+                     "is followed by a zero byte in the file that names it; save that file again");
+  // Checked before any access, which could mount a file system or reveal the read to a server.
   if (confinement && !isWithin(path, *confinement))
     throw inputError(path, "is not inside the archive that refers to it; save the scene again");
   struct stat status = {};
@@ -139,11 +139,11 @@ void registerInput(const std::filesystem::path& path) {
 InputConfinement::InputConfinement(const std::optional<std::filesystem::path>& folder) {
   if (folder)
     m_folder = std::filesystem::canonical(*folder);
-  m_before = std::exchange(confinement, m_folder ? &*m_folder : nullptr);
+  m_previous = std::exchange(confinement, m_folder ? &*m_folder : nullptr);
 }
 
 InputConfinement::~InputConfinement() {
-  confinement = m_before;
+  confinement = m_previous;
 }
 
 std::optional<std::filesystem::path> findInput(const FileId& file) {

@@ -14,7 +14,7 @@ namespace fenestra {
 /// that reuses the inode number.
 struct FileId {
   std::uint64_t device = 0, inode = 0;
-  std::int64_t birthTime = 0; ///< ns since 1970; 0: not reported by the disk
+  std::int64_t birthTime = 0; ///< ns since 1970; 0: not reported by the file system
 
   friend auto operator<=>(const FileId&, const FileId&) = default;
 };
@@ -51,7 +51,7 @@ public:
 
 private:
   std::optional<std::filesystem::path> m_folder;
-  const std::filesystem::path* m_before;
+  const std::filesystem::path* m_previous;
 };
 
 /// Name under which `file` was first read; nullopt: not registered.

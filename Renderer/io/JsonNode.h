@@ -15,7 +15,7 @@
 
 namespace fenestra {
 
-/// Size limit of text files but Slicer's scenes, bytes. Parsed JSON takes about 25 times that.
+/// Size limit of text files except Slicer's scenes, bytes. Parsed JSON takes about 25 times that.
 inline constexpr std::uint64_t maxTextBytes = std::uint64_t{4} << 20;
 
 /// Content of a text file. Throws Error (input) if it cannot be read or exceeds `maxBytes` bytes.
@@ -45,7 +45,7 @@ public:
   bool isObject() const { return m_value->is_object(); }
   bool boolean() const;
   std::string text() const;
-  /// Index of the text among `words`, which are at least two.
+  /// Index of the text in `words`, which has at least two elements.
   std::size_t choice(const std::vector<std::string>& words) const;
   double number() const;
   double number(double low, double high) const;
@@ -73,8 +73,8 @@ public:
   Error error(const std::string& hint) const;
 
 private:
-  JsonNode(const nlohmann::json& value, std::string source, std::string place)
-      : m_value(&value), m_source(std::move(source)), m_path(std::move(place)) {}
+  JsonNode(const nlohmann::json& value, std::string source, std::string path)
+      : m_value(&value), m_source(std::move(source)), m_path(std::move(path)) {}
 
   /// Returns the value. Throws Error (input) unless `isValid`.
   const nlohmann::json& require(bool isValid, const char* hint) const;

@@ -42,14 +42,14 @@ std::vector<Descriptor> lockFolders(const std::set<std::filesystem::path>& folde
 NameLock::NameLock(const std::filesystem::path& path) {
   constexpr double maxSeconds = 0.2; // s; removeStaleTempFiles holds locks for much less
   const std::filesystem::path lock =
-      path.parent_path() / hashTempName(tempFilePrefix, path.filename().string());
+      path.parent_path() / makeHashedTempName(tempFilePrefix, path.filename().string());
   const Stopwatch watch;
   for (tryTake(lock, path); !isHeld() && watch.seconds() < maxSeconds; tryTake(lock, path))
     sleepBriefly();
 }
 
-/// Fails if another process has removed the file after it was opened: other processes would not see
-/// that lock.
+/// Does not take the lock if the file was removed after it was opened: other processes would not
+/// see a lock on it.
 void NameLock::tryTake(const std::filesystem::path& lock, const std::filesystem::path& path) {
   const SignalBlocker blocker;
   m_name.emplace(lock, TempFileGuard::Kind::file);

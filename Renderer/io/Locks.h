@@ -1,6 +1,6 @@
 #pragma once
-// Locks between processes (flock), released however their process ends. On disks without locks
-// every caller proceeds.
+// Locks between processes (flock), released however their process ends. On file systems without
+// locks every caller proceeds.
 
 #include "io/Descriptor.h"
 #include "io/TempFiles.h"

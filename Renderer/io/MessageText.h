@@ -1,5 +1,5 @@
 #pragma once
-// Makes text from files fit for messages: one line of valid UTF-8, by sanitize() at most 80 bytes.
+// Makes text from files safe for messages: one line of valid UTF-8; sanitize(): at most 80 bytes.
 
 #include <algorithm>
 #include <span>

@@ -44,7 +44,7 @@ fs::path resolveTarget(const fs::path& path) {
 
 /// True if this process may not rename over the file: in a sticky folder, such as /tmp, only the
 /// owners of the file and of the folder may (rename(2), EPERM).
-bool isSticky(const struct stat& file, const fs::path& folder) {
+bool isStickyProtected(const struct stat& file, const fs::path& folder) {
   struct stat status = {};
   const uid_t user = ::geteuid();
   return ::stat(folder.c_str(), &status) == 0 && (status.st_mode & S_ISVTX) != 0 && user != 0 &&
@@ -64,12 +64,12 @@ void requireReplaceable(const fs::path& path, const fs::path& target) {
     throw outputError(path, "is a folder or a device; name a file");
   if ((status.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     throw outputError(path, "is write-protected; choose another name, or chmod u+w it");
-  if (isSticky(status, target.parent_path()))
+  if (isStickyProtected(status, target.parent_path()))
     throw outputError(path, "belongs to another user, in a folder where only owners may replace "
                             "files; choose another name or folder");
 }
 
-void requireNoInput(const fs::path& path, const std::optional<FileId>& file) {
+void requireNotInput(const fs::path& path, const std::optional<FileId>& file) {
   if (const auto input = file ? findInput(*file) : std::nullopt)
     throw usageError(path, ": would replace an input file",
                      (*input == path ? "" : " (" + input->string() + ")"), "; choose another name");
@@ -87,7 +87,7 @@ void syncFolder(const fs::path& folder) {
 }
 
 /// N of /dev/fd/N and similar paths; nullopt: other paths.
-std::optional<int> descriptorNumber(const std::string& path) {
+std::optional<int> parseDescriptorNumber(const std::string& path) {
   if (path == "/dev/stdout")
     return STDOUT_FILENO;
   if (path == "/dev/stderr")
@@ -105,7 +105,7 @@ std::optional<int> descriptorNumber(const std::string& path) {
 /// or `namedPipe`; nullopt: other paths. Throws Error (output) if the descriptor is not open for
 /// writing.
 std::optional<int> findStream(const fs::path& path) {
-  if (const auto number = descriptorNumber(path.lexically_normal().string())) {
+  if (const auto number = parseDescriptorNumber(path.lexically_normal().string())) {
     const int flags = ::fcntl(*number, F_GETFL);
     if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY)
       throw outputError(path, "is not open for writing; redirect it, as in 3>FILE");
@@ -187,7 +187,7 @@ void Outputs::add(const fs::path& path, const IsOwnFile& isOwnFile) {
       throw usageError(
           path, ": is a name for temporary files, which the next run removes; choose another name");
   }
-  requireNoInput(path, result->id());
+  requireNotInput(path, result->id());
   const std::optional<FileId> id = result->id();
   const std::optional<FileId> parent = fileId(result->target.parent_path());
   if ((parent && !m_targets.emplace(*parent, result->target.filename().string()).second) ||
@@ -204,7 +204,7 @@ void Outputs::add(const fs::path& path, const IsOwnFile& isOwnFile) {
 
 void Outputs::checkInputs() const {
   for (const auto& [path, result] : m_results)
-    requireNoInput(path, result->id());
+    requireNotInput(path, result->id());
 }
 
 void Outputs::forgetInputs() const {
@@ -236,19 +236,19 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
   std::vector<Descriptor> locks = lockFolders(folders);
   const SignalBlocker blocker;
   std::size_t placed = 0;
-  std::set<FileId> taken; // placed files; two names may be one file where a disk ignores case
+  std::set<FileId> placedIds; // two names may be one file if the file system ignores case
   try {
     for (Result* result : files) {
       const std::optional<FileId> before = result->id();
-      requireNoInput(result->path, before);
-      if (before && taken.contains(*before))
+      requireNotInput(result->path, before);
+      if (before && placedIds.contains(*before))
         throw duplicateError(result->path);
       requireReplaceable(result->path, result->target);
       result->requireOwnFile();
       result->file->place();
       ++placed;
       if (const auto after = result->id())
-        taken.insert(*after);
+        placedIds.insert(*after);
       registerResult(result->target);
     }
   } catch (...) {

@@ -1,6 +1,6 @@
 #pragma once
-// Results of a command. They are declared before the long work, refused if they would cost the user
-// a file, and put in place together when all are complete. Nothing else in Renderer writes results.
+// Results of a command. They are declared before the long work, refused if they would overwrite a
+// user's file, and put in place together when complete. Nothing else in Renderer writes results.
 //
 // Contents are complete and synced under temporary names before the first is renamed. Names are
 // exchanged, so that a rename that fails restores the previous files. Encoders work in memory, so
@@ -64,10 +64,10 @@ public:
   /// Digest of the content written last; nullopt: none, or not a declared result.
   std::optional<ContentDigest> writtenDigest(const std::filesystem::path& path) const;
 
-  /// Puts all content written since the last commit in place, all or nothing: after a failure the
-  /// results placed before are withdrawn. If two processes have the same results, one places all of
-  /// its own before the other. No signal ends the process meanwhile. Throws Error: usage if a
-  /// result has become an input; output.
+  /// Puts all content written since the last commit in place, all or nothing: a failure restores
+  /// the previous files. If two processes have the same results, one places all of its own before
+  /// the other. No signal ends the process meanwhile. Throws Error: usage if a result has become an
+  /// input; output if a result cannot be placed.
   void commit(Durability durability = Durability::synced);
 
 private:

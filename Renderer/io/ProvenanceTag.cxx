@@ -33,7 +33,7 @@ std::string computeChecksum(std::string_view content, std::size_t at) {
       updateChecksum(updateChecksum(0, content.substr(0, at)), content.substr(rest)));
 }
 
-/// Passes the bytes from `begin` to `end`, or to the end of the file, to `take` in blocks.
+/// Calls take(block) for the bytes from `begin` to `end`, or to the end of the file, in blocks.
 void readBlocks(std::istream& file, std::uint64_t begin, std::uint64_t end,
                 const std::function<void(std::string_view block)>& take) {
   file.clear();

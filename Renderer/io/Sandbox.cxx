@@ -29,11 +29,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* subcommand = "read-apart"; // internal
+constexpr const char* subcommand = "read-apart"; // first argument of a child; internal
 constexpr int childConnection = 3;
 constexpr std::uint64_t maxRequestBytes = 1 << 16; // bytes; fits into a socket's buffer
 
-// ---- frames: a length of 8 bytes, then as many bytes
+// ---- frames: the length in 8 bytes, then the content
 
 bool sendAll(int connection, std::string_view bytes) {
   while (!bytes.empty()) {
@@ -211,8 +211,8 @@ pid_t spawn(const std::string& job, int connection) {
 
 } // namespace
 
-SandboxJob::SandboxJob(std::string named, Handler answers, SandboxLimits limited)
-    : name(std::move(named)), handler(answers), limits(limited) {
+SandboxJob::SandboxJob(std::string nameIn, Handler handlerIn, SandboxLimits limitsIn)
+    : name(std::move(nameIn)), handler(handlerIn), limits(limitsIn) {
   registeredJobs().push_back(this);
 }
 

@@ -1,10 +1,10 @@
 #pragma once
-// Reads files in a sandboxed child process, for libraries that do not survive damaged files: GDCM
-// and HDF5. NRRD and NIfTI are read in the process itself: a volume should not pass through a pipe.
+// Reads files in a sandboxed child process, for libraries that crash on damaged files: GDCM and
+// HDF5. NRRD and NIfTI are read in this process, which avoids copying volumes through a socket.
 //
 // The child runs the parent's executable (/proc/self/exe: the same build even if the file has been
 // replaced; the program's file if a loader was started with it). It inherits no memory, files,
-// threads or locks. A program that uses SandboxedReader calls serveSandbox first in main, as
+// threads or locks. A program that uses SandboxedReader must call serveSandbox first in main, as
 // fenestra, its tests and its fuzz targets do. In other programs SandboxedReader::request throws
 // std::logic_error instead of running main again.
 //
@@ -33,7 +33,7 @@ struct SandboxLimits {
 struct SandboxJob {
   /// Handles a request in the child. An empty string or an exception means that there is no reply,
   /// since the file does not have the expected format.
-  using Handler = std::string (*)(const std::string& question);
+  using Handler = std::string (*)(const std::string& request);
 
   SandboxJob(std::string name, Handler handler, SandboxLimits limits = {});
 

@@ -13,8 +13,8 @@ inline constexpr const char* selfExecutable = "/proc/self/exe";
 
 /// Argument list of this program with `args`. If a loader was started with the program's file, as
 /// by the launcher of a release archive, /proc/self/exe is that loader. AT_BASE is then 0, and
-/// glibc has the program's file in AT_EXECFN. As in the launcher, --inhibit-cache keeps the loader
-/// away from the system's libraries.
+/// AT_EXECFN is the program's file (glibc). As in the launcher, --inhibit-cache prevents the loader
+/// from using the system's libraries.
 class SelfArguments {
 public:
   explicit SelfArguments(std::vector<std::string> args) : m_args(std::move(args)) {
@@ -33,7 +33,7 @@ public:
 
 private:
   std::vector<std::string> m_args;
-  std::vector<char*> m_pointers; ///< into m_words, and a null
+  std::vector<char*> m_pointers; ///< to the elements of m_args, then null
 };
 
 } // namespace fenestra

@@ -68,10 +68,10 @@ void unblock() {
 
 std::string makeTempName(std::string_view prefix) {
   std::random_device random;
-  return hashTempName(prefix, concat(random(), ' ', random()));
+  return makeHashedTempName(prefix, concat(random(), ' ', random()));
 }
 
-std::string hashTempName(std::string_view prefix, std::string_view what) {
+std::string makeHashedTempName(std::string_view prefix, std::string_view what) {
   return appendChecksum(std::string(prefix) + hashDigits(what, digitCount));
 }
 

@@ -17,7 +17,7 @@ inline constexpr std::string_view tempFilePrefix = ".fenestra-";
 /// protects a user's file of a similar name.
 std::string makeTempName(std::string_view prefix);
 /// Temporary name whose digits are a hash of `what`, and so the same in every process.
-std::string hashTempName(std::string_view prefix, std::string_view what);
+std::string makeHashedTempName(std::string_view prefix, std::string_view what);
 bool isTempName(std::string_view name, std::string_view prefix);
 
 /// Removes a temporary file or folder with this object, or when a signal ends the process.
@@ -45,9 +45,9 @@ private:
   Entry* m_entry;
 };
 
-/// Removes from `folder` what killed runs of this user have left and no process has locked: files
-/// with temporary names, or such folders accessible to this user alone. Stops silently if the
-/// folder cannot be read or memory runs out: a later run removes the rest.
+/// Removes temporary files or folders that killed runs of this user have left in `folder` and no
+/// process has locked; folders only if accessible to this user alone. Stops silently if `folder`
+/// cannot be read or memory runs out; a later run removes the rest.
 void removeStaleTempFiles(const std::filesystem::path& folder, std::string_view prefix,
                           TempFileGuard::Kind kind);
 

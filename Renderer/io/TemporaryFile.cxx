@@ -21,7 +21,7 @@ const mode_t defaultMode = [] {
   return 0666 & ~mask;
 }();
 
-/// Copies the access list (acl(5)), if any, from `from` to `to`. False: cannot be set.
+/// Copies the access control list (acl(5)), if any, from `from` to `to`. False: cannot be set.
 bool copyAccessList(const std::filesystem::path& from, int to) {
   constexpr const char* attribute = "system.posix_acl_access";
   std::array<char, 4096> list;
@@ -31,12 +31,12 @@ bool copyAccessList(const std::filesystem::path& from, int to) {
   return ::fsetxattr(to, attribute, list.data(), static_cast<std::size_t>(size), 0) == 0;
 }
 
-/// Mode of the previous file; if its group could not be kept, the group's rights are reduced to
-/// those that others have as well.
-mode_t inheritMode(const struct stat& before, bool isOfItsGroup) {
+/// Mode of the previous file. If its group cannot be set, the group's rights are reduced to those
+/// that others have as well.
+mode_t inheritMode(const struct stat& before, bool hasSameGroup) {
   const mode_t mode = before.st_mode & 0777;
   const mode_t groupAsOthers = (mode & 07) << 3;
-  return isOfItsGroup ? mode : (mode & ~mode_t{070}) | (mode & groupAsOthers);
+  return hasSameGroup ? mode : (mode & ~mode_t{070}) | (mode & groupAsOthers);
 }
 
 } // namespace
@@ -72,16 +72,16 @@ void TemporaryFile::write(std::string_view content) {
 void TemporaryFile::finish(Durability durability) {
   mode_t mode = defaultMode;
   struct stat before = {};
-  const bool isThere = ::lstat(m_target.c_str(), &before) == 0;
-  if (isThere) {
+  const bool targetExists = ::lstat(m_target.c_str(), &before) == 0;
+  if (targetExists) {
     const bool isOwned = ::fchown(*m_file, before.st_uid, before.st_gid) == 0;
-    const bool isOfItsGroup = isOwned || ::fchown(*m_file, uid_t(-1), before.st_gid) == 0;
-    mode = inheritMode(before, isOfItsGroup);
+    const bool hasSameGroup = isOwned || ::fchown(*m_file, uid_t(-1), before.st_gid) == 0;
+    mode = inheritMode(before, hasSameGroup);
   }
   if (retryOnEintr([&] { return ::fchmod(*m_file, mode); }) != 0)
     throw writeError(m_target, errno);
-  const mode_t ownerOnly = mode & 0700; // the group's bits are the list's mask, void without it
-  if (isThere && !copyAccessList(m_target, *m_file) && ::fchmod(*m_file, ownerOnly) != 0)
+  const mode_t ownerOnly = mode & 0700; // the mode's group bits are the ACL's mask
+  if (targetExists && !copyAccessList(m_target, *m_file) && ::fchmod(*m_file, ownerOnly) != 0)
     throw writeError(m_target, errno);
   if (durability == Durability::synced && retryOnEintr([&] { return ::fsync(*m_file); }) != 0 &&
       errno != EINVAL)
@@ -107,8 +107,8 @@ void TemporaryFile::place() {
     throw writeError(m_target, errno);
 }
 
-/// Places the file on disks that cannot exchange names; a hard link keeps the previous file. On
-/// disks without hard links, placing cannot be undone.
+/// Places the file on file systems that cannot exchange names. A hard link preserves the previous
+/// file; without hard links, placing cannot be undone.
 void TemporaryFile::placeByLink() {
   m_before.emplace(makeSiblingName(m_target), TempFileGuard::Kind::file);
   const bool hasBackup = ::link(m_target.c_str(), m_before->path().c_str()) == 0;

@@ -24,8 +24,8 @@ public:
   /// Appends. Throws Error (output), also if the disk is full.
   void write(std::string_view content);
 
-  /// Sets mode, owner and access list to those of the file at `target`, or of a new file. If owner
-  /// or group cannot be set, no user gains rights. Throws Error (output).
+  /// Sets mode, owner and access control list to those of the file at `target`, or of a new file.
+  /// If owner or group cannot be set, no user gains rights. Throws Error (output).
   void finish(Durability durability);
 
   /// Renames this file to `target`. An existing target gets the temporary name, and is removed with

@@ -13,7 +13,7 @@ double sum(const std::vector<double>& values) {
 }
 
 /// Shared pointer that does not own the mask.
-std::shared_ptr<const Mask> nonOwning(const Mask& mask) {
+std::shared_ptr<const Mask> makeNonOwning(const Mask& mask) {
   return {std::shared_ptr<void>(), &mask};
 }
 
@@ -29,7 +29,7 @@ double findDeepest(const std::vector<double>& depth, std::size_t width, std::siz
 }
 
 /// Fraction of the points that the clip does not remove; 0 without points.
-double unclippedFraction(const FocusPoints& points) {
+double computeUnclippedFraction(const FocusPoints& points) {
   if (points.empty())
     return 0.0;
   const auto count = std::ranges::count_if(points, &FocusPoint::isUnclipped);
@@ -89,7 +89,7 @@ std::optional<double> measureLight(const SceneView& scene, const SceneView& focu
     if (point.isUnclipped)
       points.push_back(&point);
   const std::size_t stride = points.size() / maxPoints + 1;
-  const auto sumLight = [&](const SceneView& through) {
+  const auto sumLight = [&](const SceneView& occluders) {
     const auto sumSamples = [&](const auto&, const auto& tracker) {
       std::vector<double> light(points.size() / stride + 1, 0.0);
       tbb::parallel_for(std::size_t{0}, points.size() / stride, [&](std::size_t i) {
@@ -108,7 +108,7 @@ std::optional<double> measureLight(const SceneView& scene, const SceneView& focu
       });
       return sum(light);
     };
-    return withMedium(through, sumSamples, stop);
+    return withMedium(occluders, sumSamples, stop);
   };
   const double unoccluded = sumLight(focusOnly);
   if (!(unoccluded > 0.0))
@@ -119,8 +119,8 @@ std::optional<double> measureLight(const SceneView& scene, const SceneView& focu
 std::optional<double> measureContextRemoved(const SceneView& scene, const Mask& focus,
                                             std::uint64_t seed) {
   constexpr std::int64_t strata = 64; // along each axis
-  const ContextStyle style{nonOwning(focus)};
-  const ContextField where(style, scene.volume.grid);
+  const ContextStyle style{makeNonOwning(focus)};
+  const ContextField field(style, scene.volume.grid);
   const Domain domain(scene.volume.grid, scene.crop);
   const Box box = scene.volume.grid.indexBox();
   return withMedium(scene, [&](const auto& medium, const auto&) {
@@ -133,7 +133,7 @@ std::optional<double> measureContextRemoved(const SceneView& scene, const Mask& 
           const Vec3 fraction = (Size3(x, y, z).cast<double>() + jitter) / double{strata};
           const Vec3 index = box.lower + fraction.cwiseProduct(box.upper - box.lower);
           const Vec3 world = scene.volume.grid.indexToWorld * index;
-          if (!domain.contains(index) || where.isFocus(index) || !(medium.extinction(index) > 0.0))
+          if (!domain.contains(index) || field.isFocus(index) || !(medium.extinction(index) > 0.0))
             continue;
           occupied[static_cast<std::size_t>(z)] += 1.0;
           removed[static_cast<std::size_t>(z)] += 1.0 - clipWeight(scene.clip, world);
@@ -148,21 +148,21 @@ std::optional<FocusReport> measureFocus(const SceneView& scene, const MinMaxGrid
                                         const Mask& focus, const std::vector<double>& depth,
                                         std::uint64_t seed, const StopFlag& stop) {
   const Clip noClip = ClipNone();
-  const auto majorantsFor = [&](const ContextStyle* style) {
+  const auto makeMajorants = [&](const ContextStyle* style) {
     return MajorantGrid(scene.volume.grid, ranges, scene.transfer, noClip, style);
   };
   const auto makeUnclipped = [&](const MajorantGrid& majorants, const ContextStyle* style) {
     return SceneView{scene.volume, scene.transfer, majorants, scene.lights, scene.camera,
                      noClip,       scene.crop,     style,     scene.tint};
   };
-  const ContextStyle focusOnlyStyle{nonOwning(focus), 0.0, 1.0};
-  const MajorantGrid allMajorants = majorantsFor(scene.style),
-                     focusOnly = majorantsFor(&focusOnlyStyle);
+  const ContextStyle focusOnlyStyle{makeNonOwning(focus), 0.0, 1.0};
+  const MajorantGrid allMajorants = makeMajorants(scene.style),
+                     focusOnly = makeMajorants(&focusOnlyStyle);
   const SceneView unclippedScene = makeUnclipped(allMajorants, scene.style);
 
   const FocusPoints points = findFocusPoints(scene, depth);
   FocusReport report;
-  report.unclipped = unclippedFraction(points);
+  report.unclipped = computeUnclippedFraction(points);
   report.coverage = measureCoverage(scene, points, seed, stop);
   report.withoutClip =
       measureCoverage(unclippedScene, findFocusPoints(unclippedScene, depth), seed, stop);

@@ -7,7 +7,7 @@ namespace fenestra {
 namespace {
 
 /// Largest distance of a visible focus point from the axis, mm.
-double focusRadius(const VisibleSurface& surface, const Vec3& axis) {
+double findFocusRadius(const VisibleSurface& surface, const Vec3& axis) {
   const Camera& camera = surface.camera;
   const Vec3 direction = axis.stableNormalized();
   double radius = 0.0;
@@ -16,8 +16,8 @@ double focusRadius(const VisibleSurface& surface, const Vec3& axis) {
     for (int column = 0; column < camera.width(); ++column, ++pixel) {
       if (surface.regions[pixel] != Region::focus)
         continue;
-      const Vec2 at = camera.toPlane(column + 0.5, row + 0.5);
-      const Vec3 point = fromBuffer(camera, {at.x(), at.y(), surface.depths[pixel]});
+      const Vec2 position = camera.toPlane(column + 0.5, row + 0.5);
+      const Vec3 point = fromBuffer(camera, {position.x(), position.y(), surface.depths[pixel]});
       radius = std::max(radius, (point - camera.pose().target).cross(direction).norm());
     }
   return radius;
@@ -49,7 +49,7 @@ SurfaceChange measureChange(const VisibleSurface& before, const VisibleSurface& 
   for (std::size_t i = 0; i < before.depths.size(); ++i)
     if (before.regions[i] == Region::context && after.regions[i] == Region::context)
       changes.push_back(std::abs((after.depths[i] - before.depths[i]) / degrees));
-  const double radius = std::max(focusRadius(before, axis), focusRadius(after, axis));
+  const double radius = std::max(findFocusRadius(before, axis), findFocusRadius(after, axis));
   SurfaceChange change{.focus = radius * pi / 180.0};
   if (changes.empty())
     return change;

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t publishedSize = 512;
 const Size3 publishedFocus{255, 255, 391};
-constexpr int maxScalar = 255; ///< largest scalar
+constexpr int maxScalar = 255;
 
 std::int16_t sliceScalar(std::int64_t slice, std::int64_t count) {
   const auto last = static_cast<double>(count - 1);

@@ -227,9 +227,9 @@ void KneeSubject::addLigaments() {
 void KneeSubject::addMenisci() {
   const auto meniscus = [this](const char* id, const char* name, const MeniscusRing& ring) {
     const Vec3 center{ring.center.x(), ring.center.y(), 2.0};
-    const Vec3 reach{ring.outerRadii.x(), ring.outerRadii.y(), 6.0};
+    const Vec3 halfSize{ring.outerRadii.x(), ring.outerRadii.y(), 6.0};
     addLayer(addSegment(id, name, {0.663, 0.784, 0.702}), meniscusSignal,
-             {center - reach, center + reach}, [ring](const KneeSite& s) {
+             {center - halfSize, center + halfSize}, [ring](const KneeSite& s) {
                const double above = s.femoralCartilage + 0.25 - s.femur;
                const double below = s.tibialCartilage + 0.15 - s.tibia;
                return std::max({ring.distance(s.point), above, below});

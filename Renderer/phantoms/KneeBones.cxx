@@ -122,7 +122,7 @@ double KneeBones::profile(double angle) const {
 /// Condyles and trochlea as one surface around the transcondylar axis. At the rear and below, each
 /// condyle is convex across; in front, the groove lies between a high lateral and a lower medial
 /// facet.
-double KneeBones::wheelField(const Vec3& p) const {
+double KneeBones::condyleField(const Vec3& p) const {
   const double y = p.y() - axisY, z = p.z() - axisZ;
   const double angle = std::atan2(z, y);
   const double medial = std::abs(p.x() - (-23.5 + 0.10 * p.y()));
@@ -141,7 +141,7 @@ double KneeBones::wheelField(const Vec3& p) const {
 double KneeBones::femurField(const Vec3& p) const {
   const Walls wall = computeWalls(p);
   const double sides = std::max(wall.medial - p.x(), p.x() - wall.lateral);
-  double bone = smoothIntersection(wheelField(p), sides, 9.0);
+  double bone = smoothIntersection(condyleField(p), sides, 9.0);
   const double medialEpicondyle = ellipsoidDistance(p, {-35, -3, 25}, {5.5, 11, 11});
   const double lateralEpicondyle = ellipsoidDistance(p, {35, -5, 24}, {5, 9, 9});
   bone = smoothUnion(bone, std::min(medialEpicondyle, lateralEpicondyle), 8.0);
@@ -215,8 +215,8 @@ double lesionFactor(const CartilageLesion& lesion, const Vec3& p) {
   const double y = p.y() - axisY, z = p.z() - axisZ;
   const double along = std::hypot(y, z) * (std::atan2(z, y) - lesion.angle);
   const double ragged = 0.5 * valueNoise(p / 2.0, 51);
-  const double fromRim = std::hypot(p.x() - lesion.x, along) + ragged - 0.5 * lesion.diameter;
-  return 1.0 - lesion.depth * (1.0 - smoothStep(-0.35, 0.35, fromRim));
+  const double edgeDistance = std::hypot(p.x() - lesion.x, along) + ragged - 0.5 * lesion.diameter;
+  return 1.0 - lesion.depth * (1.0 - smoothStep(-0.35, 0.35, edgeDistance));
 }
 
 /// Thickness at `margin` mm inside the cartilage's edge: rises from 0 to `thickness`.

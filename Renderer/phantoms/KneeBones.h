@@ -48,7 +48,7 @@ public:
 
 private:
   double femurField(const Vec3& point) const;
-  double wheelField(const Vec3& point) const;
+  double condyleField(const Vec3& point) const;
   double tibiaField(const Vec3& point) const;
   double patellaField(const Vec3& point) const;
   /// Distance to the zero level of a field, with surface noise; the bone lies in `box`.

@@ -7,7 +7,7 @@ namespace fenestra {
 
 namespace {
 
-/// 1 on thin, crumpled sheets about `size` mm apart that come and go; 0 elsewhere.
+/// 1 on thin, crumpled sheets with gaps, about `size` mm apart; 0 elsewhere.
 double septa(const Vec3& p, const Vec3& size, double thickness, std::uint64_t seed) {
   const Vec3 bend{valueNoise(p / 5.0, seed + 100), valueNoise(p / 5.0, seed + 101),
                   valueNoise(p / 5.0, seed + 102)};

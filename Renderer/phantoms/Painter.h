@@ -10,7 +10,6 @@
 
 namespace fenestra {
 
-/// A point of a subject.
 struct PaintSite {
   Vec3 point;     ///< world
   double surface; ///< mm to the subject's outer surface
@@ -62,7 +61,6 @@ protected:
   static Field makeInset(double depth) {
     return [depth](const Site& site) { return site.surface + depth; };
   }
-  /// Distance to the intersection of two shapes.
   static Field makeIntersection(Field a, Field b) {
     return [a = std::move(a), b = std::move(b)](const Site& s) { return std::max(a(s), b(s)); };
   }
@@ -81,7 +79,7 @@ inline const Rgb vesselColor{0.847, 0.396, 0.310};
 inline const Rgb fatColor{0.902, 0.863, 0.275};
 inline const Rgb skinColor{0.694, 0.478, 0.396};
 
-/// Paints voxels of a grid, from the front layer to the back, until the voxel is full.
+/// Paints each voxel of a grid from the front layer to the back, until it is completely covered.
 ///
 /// A Subject is a LayeredSubject with `background`, the signal around the subject;
 /// `makeSite(point)`, world; and `acquire(signal, point, voxel)`, the scanner's output, int16.
@@ -110,7 +108,7 @@ public:
     const Interval range{-length, length * static_cast<double>(count)};
     std::vector<const Layer*> layers;
     for (const Layer& layer : m_subject.layers())
-      if (!expandBox(layer.box, boundaryReach()).clip(row, range).isEmpty())
+      if (!expandBox(layer.box, boundaryRange()).clip(row, range).isEmpty())
         layers.push_back(&layer);
     return layers;
   }
@@ -119,7 +117,7 @@ public:
   /// boundary, elsewhere from the center alone.
   Sample paintVoxel(const std::vector<const Layer*>& row, const Vec3& center) const {
     Sample middle = paint(row, center);
-    if (middle.boundaryDistance > boundaryReach())
+    if (middle.boundaryDistance > boundaryRange())
       return middle;
     for (const double offset : {-1.0 / 3.0, 1.0 / 3.0})
       middle.signal += paint(row, center + offset * m_sliceStep).signal;
@@ -129,7 +127,7 @@ public:
 
 private:
   /// Largest distance from a voxel's center, mm, at which a boundary affects the voxel.
-  double boundaryReach() const { return m_softness + m_sliceStep.norm() / 3.0; }
+  double boundaryRange() const { return m_softness + m_sliceStep.norm() / 3.0; }
 
   Sample paint(const std::vector<const Layer*>& row, const Vec3& point) const {
     const auto site = m_subject.makeSite(point);

@@ -15,9 +15,9 @@ namespace fenestra {
 
 namespace {
 
-/// Makes pugixml throw std::bad_alloc. Otherwise it silently drops attributes when memory runs out,
-/// as its result codes are not checked here.
-void throwWithoutMemory() {
+/// Makes pugixml throw std::bad_alloc. By default it drops attributes when memory runs out, and
+/// reports this only by result codes.
+void throwIfOutOfMemory() {
   const auto allocate = [](std::size_t size) {
     void* const memory = std::malloc(size);
     return memory ? memory : throw std::bad_alloc();
@@ -116,7 +116,7 @@ std::string makePhantomScene(const Phantom& phantom, const std::string& name,
   addGeometry(texts, phantom.volume.grid);
   addAppearance(texts, phantom);
 
-  throwWithoutMemory();
+  throwIfOutOfMemory();
   pugi::xml_document document;
   const std::string_view scene = findResource("phantoms/scene.mrml");
   document.load_buffer(scene.data(), scene.size(), pugi::parse_default | pugi::parse_declaration);

@@ -11,8 +11,8 @@ namespace fenestra {
 /// Content of a .mrml file. Its nodes are named after `name`: Volume, Segmentation, VolumeProperty
 /// and MarkupsROI with their storage and display nodes; uncropped GPU volume rendering; and view 1
 /// with a parallel camera that frames the volume, seen from Phantom::towardViewer. World is RAS;
-/// numbers have six digits, as Slicer's. `data`: path from the scene to its files, empty or with a
-/// trailing /.
+/// numbers have six significant digits, as in Slicer. `data`: path from the scene to its files,
+/// empty or with a trailing /.
 std::string makePhantomScene(const Phantom& phantom, const std::string& name,
                              const std::string& data = "");
 

@@ -105,7 +105,6 @@ std::string encodeArchive(const Phantom& phantom, const std::filesystem::path& p
   return sealProvenanceTag(encodeZip(entries, std::string(blankProvenanceTag), path));
 }
 
-/// True if the file begins with `text`.
 bool fileStartsWith(const std::filesystem::path& path, const std::string& text) {
   std::string bytes(text.size(), '\0');
   return std::ifstream(path, std::ios::binary)

@@ -31,7 +31,7 @@ struct CubeOptions {
   std::int64_t size = 512; ///< voxels along each edge
 };
 
-/// Simulated model of the clipping method's paper (section 4): a cube whose scalar is its z index,
+/// Simulated model of the paper in CITATION.cff (section 4): a cube whose scalar is its z index,
 /// around a cuboid focus. Voxel axes are R, A, S; the cube is centered at the origin. Slice k of n
 /// holds 255 (2 k - (n - 1)) / (n - 1), rounded: -255 in the first slice, 255 in the last. With 512
 /// slices the middle two hold 0, and each other slice holds one more than the slice below: the z

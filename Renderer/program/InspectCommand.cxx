@@ -30,21 +30,20 @@ bool isCharacterStart(char c) { // in UTF-8
   return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
 }
 
-std::size_t countCharacters(const std::string& textMember) {
-  return static_cast<std::size_t>(
-      std::count_if(textMember.begin(), textMember.end(), isCharacterStart));
+std::size_t countCharacters(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), isCharacterStart));
 }
 
 /// `text`, shortened with "..." to at most `most` characters.
-std::string shorten(std::string textMember, std::size_t most) {
-  textMember = toOneLine(std::move(textMember));
-  if (countCharacters(textMember) <= most)
-    return textMember;
+std::string shorten(std::string text, std::size_t most) {
+  text = toOneLine(std::move(text));
+  if (countCharacters(text) <= most)
+    return text;
   std::size_t end = 0;
-  for (std::size_t count = 0; end < textMember.size(); ++end)
-    if (isCharacterStart(textMember[end]) && ++count > most - 3)
+  for (std::size_t count = 0; end < text.size(); ++end)
+    if (isCharacterStart(text[end]) && ++count > most - 3)
       break;
-  return textMember.substr(0, end) + "...";
+  return text.substr(0, end) + "...";
 }
 
 /// Joins the texts that are not empty.
@@ -54,9 +53,9 @@ std::string joinNonEmpty(Row texts, const char* between = ", ") {
 }
 
 std::string formatNumber(double x, const char* format = "%.6g") {
-  char textMember[32];
-  std::snprintf(textMember, sizeof textMember, format, x == 0.0 ? 0.0 : x); // not -0
-  return textMember;
+  char text[32];
+  std::snprintf(text, sizeof text, format, x == 0.0 ? 0.0 : x); // not -0
+  return text;
 }
 
 // ---- members of the report
@@ -79,13 +78,13 @@ std::string nameAndId(const Json& node) {
 }
 
 std::string toHex(const Json& color) {
-  std::string textMember = "#";
+  std::string text = "#";
   for (const Json& part : color) {
     char byte[16];
     std::snprintf(byte, sizeof byte, "%02lx", std::lround(255.0 * part.get<double>()));
-    textMember += byte;
+    text += byte;
   }
-  return textMember;
+  return text;
 }
 
 std::string formatColors(const Json& background) {
@@ -98,12 +97,12 @@ std::string formatFiles(const Json& list) {
     return "";
   const auto missing = std::count_if(list.begin(), list.end(),
                                      [](const Json& file) { return file["there"] == false; });
-  std::string formatValue = textMember(list[0], "name", longestFile - 10);
+  std::string names = textMember(list[0], "name", longestFile - 10);
   if (list.size() > 1)
-    formatValue += concat(" and ", list.size() - 1, " more");
+    names += concat(" and ", list.size() - 1, " more");
   if (missing > 0)
-    formatValue += list.size() == 1 ? " (missing)" : concat(" (", missing, " missing)");
-  return formatValue;
+    names += list.size() == 1 ? " (missing)" : concat(" (", missing, " missing)");
+  return names;
 }
 
 /// Text, numbers, colors of a background, or files; empty: null or anything else.
@@ -132,7 +131,7 @@ std::string formatValue(const std::string& key, const Json& member) {
 /// Replaces "{key}" in `words` by that member, and "{}" by name and id; empty: one of them is null
 /// or missing.
 std::string fillTemplate(std::string_view words, const Json& object) {
-  std::string textMember;
+  std::string text;
   for (auto open = words.find('{'); open != words.npos; open = words.find('{')) {
     const auto close = words.find('}', open);
     const std::string key(words.substr(open + 1, close - open - 1));
@@ -140,10 +139,10 @@ std::string fillTemplate(std::string_view words, const Json& object) {
         key.empty() ? nameAndId(object) : formatValue(key, object.value(key, Json()));
     if (member.empty())
       return "";
-    textMember.append(words.substr(0, open)).append(member);
+    text.append(words.substr(0, open)).append(member);
     words.remove_prefix(close + 1);
   }
-  return textMember.append(words);
+  return text.append(words);
 }
 
 /// Template for a part of the report, whatever its kind. Applies if all its members exist and, if
@@ -198,13 +197,13 @@ std::string section(const char* title, const std::string& lines) {
   return lines.empty() ? "" : std::string("\n") + title + "\n" + lines;
 }
 
-std::string line(const std::string& textMember) {
-  return textMember.substr(0, textMember.find_last_not_of(' ') + 1) + "\n";
+std::string line(const std::string& text) {
+  return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
 }
 
 /// Wrapped text; the first line begins with `label`, the others are indented by its width.
-std::string paragraph(const std::string& label, const std::string& textMember) {
-  const std::string lines = wrapLines(toOneLine(textMember), width - countCharacters(label));
+std::string paragraph(const std::string& label, const std::string& text) {
+  const std::string lines = wrapLines(toOneLine(text), width - countCharacters(label));
   return label + replaceAll(lines, "\n", "\n" + std::string(countCharacters(label), ' ')) + "\n";
 }
 
@@ -235,11 +234,11 @@ std::string table(const std::string& indent, const std::vector<Row>& rows,
 /// Cells of a segment's material: name, color, kind, and why it was chosen.
 Row materialCells(const Json& material) {
   const Json& color = material["color"];
-  const std::string formatColors = color.is_null() ? "as it is"
-                                   : color[0].is_array()
-                                       ? toHex(color[0][1]) + " to " + toHex(color.back()[1])
-                                       : toHex(color);
-  return {material["name"].is_null() ? "-" : textMember(material, "name", 24), formatColors,
+  const std::string colors = color.is_null() ? "as it is"
+                             : color[0].is_array()
+                                 ? toHex(color[0][1]) + " to " + toHex(color.back()[1])
+                                 : toHex(color);
+  return {material["name"].is_null() ? "-" : textMember(material, "name", 24), colors,
           material["kind"], textMember(material, "why", 48)};
 }
 
@@ -342,10 +341,10 @@ std::string inspectionText(const Inspection& inspection) {
                                                     {"segmentation", "segmentation or label map"},
                                                     {"dicom", "DICOM folder"}};
   const bool refused = !inspection["refused"].is_null();
-  std::string textMember =
+  std::string text =
       paragraph("", inspection["input"].get<std::string>() + ": " + kinds.at(inspection["kind"]) +
                         fillTemplate(", version {version}", inspection));
-  textMember += section("DICOM series", seriesLines(inspection["series"]));
+  text += section("DICOM series", seriesLines(inspection["series"]));
   for (const auto& [key, title] : {std::pair("volumes", "Volumes"),
                                    {"segmentations", "Segmentations"},
                                    {"volumeRenderings", "Volume renderings"},
@@ -354,16 +353,15 @@ std::string inspectionText(const Inspection& inspection) {
                                    {"views", "Views"},
                                    {"cameras", "Cameras"},
                                    {"transforms", "Transforms"}})
-    textMember += section(title, nodeLines(inspection[key]));
-  textMember += section("Other nodes", otherLines(inspection["others"]));
+    text += section(title, nodeLines(inspection[key]));
+  text += section("Other nodes", otherLines(inspection["others"]));
   if (refused)
-    textMember +=
+    text +=
         "\n" + paragraph("", "A render would fail: " + inspection["refused"].get<std::string>());
   if (const Json& use = inspection["render"]; !use.is_null())
-    textMember +=
-        section(refused ? "It would use, as far as can be determined" : "A render would use",
-                renderLines(use));
-  return textMember + section("Warnings", listLines(inspection["warnings"])) +
+    text += section(refused ? "It would use, as far as can be determined" : "A render would use",
+                    renderLines(use));
+  return text + section("Warnings", listLines(inspection["warnings"])) +
          section("Ignored", listLines(inspection["ignored"]));
 }
 

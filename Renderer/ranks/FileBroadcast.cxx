@@ -23,35 +23,35 @@ void forEachBlock(std::uint64_t size, Each&& each) {
 
 } // namespace
 
-void shareFiles(const std::vector<fs::path>& files, Ranks& ranks) {
+void broadcastFiles(const std::vector<fs::path>& files, Ranks& ranks) {
   std::string working = fs::current_path().string(), none;
-  ranks.spread(working);
+  ranks.broadcast(working);
   for (const fs::path& file : files) {
     std::string name = fs::absolute(file).lexically_normal().string();
     std::uint64_t size = fs::file_size(file);
-    ranks.spread(name);
-    ranks.spread({reinterpret_cast<char*>(&size), sizeof size});
+    ranks.broadcast(name);
+    ranks.broadcast({reinterpret_cast<char*>(&size), sizeof size});
     std::ifstream content(file, std::ios::binary);
     forEachBlock(size, [&](std::span<char> block) {
       if (!content.read(block.data(), static_cast<std::streamsize>(block.size())))
-        throw inputError(file, "cannot be read to its end; check its disk");
-      ranks.spread(block);
+        throw inputError(file, "cannot be read completely; check its disk");
+      ranks.broadcast(block);
     });
   }
-  ranks.spread(none);
+  ranks.broadcast(none);
 }
 
-SharedFiles::SharedFiles(Ranks& ranks) {
+ReceivedFiles::ReceivedFiles(Ranks& ranks) {
   std::string text;
-  ranks.spread(text);
+  ranks.broadcast(text);
   m_working = text;
-  for (ranks.spread(text); !text.empty(); ranks.spread(text)) {
+  for (ranks.broadcast(text); !text.empty(); ranks.broadcast(text)) {
     std::uint64_t size = 0;
-    ranks.spread({reinterpret_cast<char*>(&size), sizeof size});
+    ranks.broadcast({reinterpret_cast<char*>(&size), sizeof size});
     const fs::path path = m_folder.add(fs::path(text).relative_path());
     std::ofstream file(path, std::ios::binary);
     forEachBlock(size, [&](std::span<char> block) {
-      ranks.spread(block);
+      ranks.broadcast(block);
       file.write(block.data(), static_cast<std::streamsize>(block.size()));
     });
     if (!file.flush())
@@ -59,23 +59,24 @@ SharedFiles::SharedFiles(Ranks& ranks) {
   }
 }
 
-fs::path SharedFiles::here(const fs::path& remotePath) const {
+fs::path ReceivedFiles::localPath(const fs::path& remotePath) const {
   return m_folder.path() / (m_working / remotePath).lexically_normal().relative_path();
 }
 
-OptionValues SharedFiles::renamed(const OptionValues& options, std::span<const Flag> known) const {
+OptionValues ReceivedFiles::localizePaths(const OptionValues& options,
+                                          std::span<const Option> known) const {
   OptionValues result = options;
   const auto localize = [&](const std::string& name) {
     result.remove(name);
     for (const std::string& value : options.texts(name)) {
       std::error_code failed;
-      const fs::path file = here(value);
+      const fs::path file = localPath(value);
       result.add(name, fs::exists(file, failed) ? file.string() : value);
     }
   };
   localize("INPUT");
-  for (const Flag& option : known)
-    if (option.canNameFile() && !option.isWritten() && options.has(option.name))
+  for (const Option& option : known)
+    if (option.canNameFile() && !option.isOutputFile() && options.has(option.name))
       localize(option.name);
   return result;
 }

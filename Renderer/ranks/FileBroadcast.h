@@ -19,7 +19,7 @@ public:
 
   /// `options` with rank 0's file names, relative to its working folder, replaced by those of the
   /// copies.
-  OptionValues localizePaths(const OptionValues& options, std::span<const Flag> known) const;
+  OptionValues localizePaths(const OptionValues& options, std::span<const Option> known) const;
 
 private:
   std::filesystem::path localPath(const std::filesystem::path& remotePath) const;

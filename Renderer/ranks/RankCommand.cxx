@@ -35,16 +35,16 @@ void requireSameRanks(const std::vector<std::string>& targets) {
   if (other != targets.end())
     throw usageError("mpirun: rank ", other - targets.begin(), " is ", *other, ", rank 0 is ",
                      targets.front(),
-                     "; use one build, and set FENESTRA_INSTRUCTIONS to a set of all machines");
+                     "; use one build, and set FENESTRA_INSTRUCTIONS to a set that all support");
 }
 
-/// Facts that differ if the scenes do: the range of the voxels, the camera, the majorants.
+/// Properties that differ if the scenes do: the range of the voxels, the camera, the majorants.
 std::string describeScene(const PreparedScene& scene, const RenderSettings& settings) {
   constexpr int exact = 17; // significant digits
   const CameraPose& pose = scene.camera().pose();
   const MajorantGrid& majorants = scene.view().majorants;
-  return textOf(
-      targetOf(scene.view(), settings), "; voxels ", toString(scene.volume().minimum, exact),
+  return concat(
+      findTarget(scene.view(), settings), "; voxels ", toString(scene.volume().minimum, exact),
       " to ", toString(scene.volume().maximum, exact), "; camera at ",
       joinNumbers(pose.position, ",", exact), " toward ", joinNumbers(pose.target, ",", exact),
       "; ", majorants.size(), " cells, ", majorants.emptyCount(), " of them empty");
@@ -56,15 +56,15 @@ void startRanks(const RenderOptions& options, const PreparedScene& scene,
                 Scheduler& scheduler) {
   startWorkers(ranks);
   try {
-    shareFiles(filesOf(scene, options), ranks);
+    broadcastFiles(listInputFiles(scene, options), ranks);
     std::string text = describeScene(scene, settings);
-    ranks.spread(text);
-  } catch (const Error& error) { // abort: the other ranks would wait for bytes
+    ranks.broadcast(text);
+  } catch (const Error& error) { // without an abort, the other ranks would wait for more bytes
     ranks.abort(error.what(), error.exitStatus());
   } catch (const std::exception& error) {
     ranks.abort(error.what(), static_cast<int>(ErrorKind::input));
   }
-  scheduler.help(monitor);
+  scheduler.start(monitor);
 }
 
 /// Rank 0: the complete command.
@@ -76,7 +76,7 @@ int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::str
                            const RenderSettings& settings, RenderMonitor& monitor) {
       startRanks(options, scene, settings, monitor, ranks, scheduler);
     };
-    const int status = renderWith(start, argc, argv, firstArgument(argc, argv));
+    const int status = runRender(start, argc, argv, firstArgument(argc, argv));
     if (!scheduler.stopWorkers(status == stoppedStatus))
       ranks.abort("stopped; other ranks do not respond", status);
     return status;
@@ -91,21 +91,21 @@ void runOtherRank(int argc, char** argv, Ranks& ranks) {
   const std::optional<OptionValues> given =
       parseCommandLine(renderSyntax, argc, argv, firstArgument(argc, argv));
   configureMachine(*given);
-  std::optional<SharedFiles> files(ranks);
+  std::optional<ReceivedFiles> files(ranks);
   std::string expected;
-  ranks.spread(expected);
-  RenderJob request = makeRenderJob(files->renamed(*given, renderSyntax.flags));
-  RenderRequest& wanted = request.options.scene;
-  wanted.features = wanted.measure = false; // rank 0 alone needs them
-  checkMemory(wanted);
-  const PreparedScene scene(wanted, request.input);
+  ranks.broadcast(expected);
+  RenderJob job = makeRenderJob(files->localizePaths(*given, renderSyntax.options));
+  RenderRequest& request = job.options.scene;
+  request.features = request.measure = false; // rank 0 alone needs them
+  checkMemory(request);
+  const PreparedScene scene(request, job.input);
   files.reset();
-  const RenderSettings settings = makeSettings(request.options, scene.background());
-  if (const std::string here = describeScene(scene, settings); here != expected)
-    throw inputError(wanted.input, "scene differs from rank 0's (", here, ", not ", expected,
+  const RenderSettings settings = makeSettings(job.options, scene.background());
+  if (const std::string own = describeScene(scene, settings); own != expected)
+    throw inputError(request.input, "scene differs from rank 0's (", own, ", not ", expected,
                      "); a file that it refers to may differ between machines");
   RenderMonitor monitor;
-  const DeferredStop stopInstead(monitor.stop);
+  const DeferredStop deferredStop(monitor.stop);
   runWorker(ranks, scene.view(), settings, monitor);
 }
 
@@ -117,7 +117,7 @@ int dispatchRank(int argc, char** argv) {
   if (ranks.count() == 1)
     return dispatch(argc, argv);
   const std::vector<std::string> targets =
-      ranks.together(textOf(versionText, " on ", processorText, " by ", instructionSet()));
+      ranks.allGather(concat(versionText, " on ", processorText, " by ", instructionSet()));
   if (ranks.rank() == 0)
     return runFirstRank(argc, argv, ranks, targets);
   if (!waitForStart(ranks))

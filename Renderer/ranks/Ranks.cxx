@@ -31,29 +31,28 @@ Ranks::~Ranks() {
   MPI_Finalize();
 }
 
-std::vector<std::string> Ranks::together(const std::string& text) {
-  constexpr std::size_t maxSeconds = 512;
-  std::vector<char> mine(maxSeconds), all(maxSeconds * static_cast<std::size_t>(m_count));
-  std::copy_n(text.begin(), std::min(text.size(), maxSeconds - 1), mine.begin());
+std::vector<std::string> Ranks::allGather(const std::string& text) {
+  constexpr std::size_t maxBytes = 512;
+  std::vector<char> mine(maxBytes), all(maxBytes * static_cast<std::size_t>(m_count));
+  std::copy_n(text.begin(), std::min(text.size(), maxBytes - 1), mine.begin());
   const std::lock_guard lock(m_mutex);
-  MPI_Allgather(mine.data(), maxSeconds, MPI_CHAR, all.data(), maxSeconds, MPI_CHAR,
-                MPI_COMM_WORLD);
+  MPI_Allgather(mine.data(), maxBytes, MPI_CHAR, all.data(), maxBytes, MPI_CHAR, MPI_COMM_WORLD);
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < all.size(); i += maxSeconds)
+  for (std::size_t i = 0; i < all.size(); i += maxBytes)
     texts.emplace_back(&all[i]);
   return texts;
 }
 
-void Ranks::spread(std::span<char> bytes) {
+void Ranks::broadcast(std::span<char> bytes) {
   const std::lock_guard lock(m_mutex);
   MPI_Bcast(bytes.data(), static_cast<int>(bytes.size()), MPI_CHAR, 0, MPI_COMM_WORLD);
 }
 
-void Ranks::spread(std::string& text) {
+void Ranks::broadcast(std::string& text) {
   std::uint64_t size = text.size();
-  spread({reinterpret_cast<char*>(&size), sizeof size});
+  broadcast({reinterpret_cast<char*>(&size), sizeof size});
   text.resize(size);
-  spread(std::span(text));
+  broadcast(std::span(text));
 }
 
 void Ranks::send(int to, const Message& message) {
@@ -62,7 +61,7 @@ void Ranks::send(int to, const Message& message) {
            MPI_COMM_WORLD);
 }
 
-std::optional<Received> Ranks::receive() {
+std::optional<ReceivedMessage> Ranks::receive() {
   const std::lock_guard lock(m_mutex);
   int isPending = 0;
   MPI_Status status = {};
@@ -71,10 +70,10 @@ std::optional<Received> Ranks::receive() {
     return std::nullopt;
   int size = 0;
   MPI_Get_count(&status, MPI_UINT64_T, &size);
-  Received measureIrradiance{status.MPI_SOURCE, Message(static_cast<std::size_t>(size))};
-  MPI_Recv(measureIrradiance.message.data(), size, MPI_UINT64_T, measureIrradiance.from, messageTag,
-           MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-  return measureIrradiance;
+  ReceivedMessage received{status.MPI_SOURCE, Message(static_cast<std::size_t>(size))};
+  MPI_Recv(received.message.data(), size, MPI_UINT64_T, received.from, messageTag, MPI_COMM_WORLD,
+           MPI_STATUS_IGNORE);
+  return received;
 }
 
 bool Ranks::hasMessage() {
@@ -85,13 +84,13 @@ bool Ranks::hasMessage() {
 }
 
 void Ranks::abort(std::string_view line, int status) {
-  std::cerr << toOneLine(textOf("fenestra: rank ", m_rank, ": ", line)) << std::endl;
+  std::cerr << toOneLine(concat("fenestra: rank ", m_rank, ": ", line)) << std::endl;
   MPI_Abort(MPI_COMM_WORLD, status); // without the lock: other threads may be inside a call
   ::_exit(status);
 }
 
-void Rests::rest() const {
-  constexpr double minSeconds = 0.0003, maxSeconds = 0.005; // s
+void BackoffPoller::wait() const {
+  constexpr double minSeconds = 0.0003, maxSeconds = 0.005;
   std::this_thread::sleep_for(
       std::chrono::duration<double>(std::clamp(m_watch.seconds() / 8.0, minSeconds, maxSeconds)));
 }

@@ -18,7 +18,7 @@ namespace {
 /// First word of each message from rank 0.
 constexpr std::uint64_t startTag = 1, leaseTag = 2, stopTag = 3;
 
-constexpr std::size_t maxLeaseTiles = 4096; ///< per lease: 60 MB
+constexpr std::size_t maxLeaseTiles = 4096; ///< 60 MB
 
 /// Reads the words of a message in order.
 class MessageReader {
@@ -26,7 +26,7 @@ public:
   explicit MessageReader(const Message& message) : m_message(message) {}
 
   std::uint64_t word() { return m_message.at(m_next++); }
-  std::size_t left() const { return m_message.size() - m_next; }
+  std::size_t wordsLeft() const { return m_message.size() - m_next; }
 
 private:
   const Message& m_message;
@@ -88,18 +88,18 @@ public:
   std::optional<TileLease> next(RenderResult& result) {
     m_watch = {};
     returnTiles(result);
-    for (const Rests poller;;) {
-      const std::optional<Received> measureIrradiance = m_ranks.receive();
-      if (!measureIrradiance) {
-        poller.rest();
+    for (const BackoffPoller poller;;) {
+      const std::optional<ReceivedMessage> received = m_ranks.receive();
+      if (!received) {
+        poller.wait();
         continue;
       }
-      MessageReader reader(measureIrradiance->message);
+      MessageReader reader(received->message);
       if (reader.word() == stopTag)
         return std::nullopt;
       TileLease lease = {{}, reader.word(), reader.word()};
       m_tiles = lease.tiles = readTiles(reader, result.film);
-      if (reader.left() > 0)
+      if (reader.wordsLeft() > 0)
         readPlan(reader, result);
       watch();
       return lease;
@@ -119,13 +119,13 @@ private:
   }
 
   static void readPlan(MessageReader& reader, RenderResult& result) {
-    std::vector<float> plan(reader.left());
+    std::vector<float> plan(reader.wordsLeft());
     for (float& s : plan)
       s = std::bit_cast<float>(static_cast<std::uint32_t>(reader.word()));
     result.last.plan = SamplePlan(std::move(plan));
   }
 
-  /// Stops the current lease if a message arrives meanwhile: it can only end the work.
+  /// Stops the current lease if a message arrives meanwhile: only stopTag can arrive then.
   void watch() {
     m_watch = std::jthread([this](const std::stop_token& end) {
       std::mutex mutex;
@@ -149,16 +149,16 @@ private:
 
 // ---- rank 0
 
-void recruitAll(Ranks& ranks) {
+void startWorkers(Ranks& ranks) {
   for (int rank = 1; rank < ranks.count(); ++rank)
     ranks.send(rank, {startTag});
 }
 
-Lender::~Lender() {
+Scheduler::~Scheduler() {
   m_thread = {};
 }
 
-void Lender::help(RenderMonitor& monitor) {
+void Scheduler::start(RenderMonitor& monitor) {
   m_monitor = &monitor;
   monitor.workers = {m_ranks.count() - 1,
                      [this](Pass& pass, RenderResult& result) {
@@ -166,23 +166,23 @@ void Lender::help(RenderMonitor& monitor) {
                        m_pass = &pass;
                        m_result = &result;
                      },
-                     [this](const RenderMonitor& watched) { return join(watched); }};
+                     [this](const RenderMonitor& current) { return join(current); }};
   m_thread = std::jthread([this](const std::stop_token& end) { serve(end); });
 }
 
-void Lender::serve(const std::stop_token& end) {
-  Rests poller;
+void Scheduler::serve(const std::stop_token& end) {
+  BackoffPoller poller;
   try {
     while (!end.stop_requested()) {
       {
         const std::lock_guard lock(m_mutex);
         if (m_pass) {
-          if (hear())
-            poller.begin();
-          lendAll();
+          if (receiveResults())
+            poller.reset();
+          dispatchTiles();
         }
       }
-      poller.rest();
+      poller.wait();
     }
   } catch (const std::bad_alloc&) {
     m_ranks.abort("out of memory; use a smaller image", static_cast<int>(ErrorKind::output));
@@ -190,20 +190,20 @@ void Lender::serve(const std::stop_token& end) {
 }
 
 /// Handles all pending messages; false if there are none. The caller holds m_mutex.
-bool Lender::hear() {
+bool Scheduler::receiveResults() {
   bool hasReceived = false;
-  while (const std::optional<Received> measureIrradiance = m_ranks.receive()) {
+  while (const std::optional<ReceivedMessage> received = m_ranks.receive()) {
     hasReceived = true;
-    Borrower& worker = m_borrowers[static_cast<std::size_t>(measureIrradiance->from)];
-    worker.waitReadable = true;
-    takeBack(measureIrradiance->message);
-    worker.threads = measureIrradiance->message[1];
+    Worker& worker = m_workers[static_cast<std::size_t>(received->from)];
+    worker.isIdle = true;
+    acceptResult(received->message);
+    worker.threads = received->message[1];
   }
   return hasReceived;
 }
 
 /// Adds a worker's samples to the film. The caller holds m_mutex.
-void Lender::takeBack(const Message& message) {
+void Scheduler::acceptResult(const Message& message) {
   MessageReader reader(message);
   if (reader.word() != 0)
     m_monitor->stop = true;
@@ -212,82 +212,82 @@ void Lender::takeBack(const Message& message) {
   forEachCounter(counters, [&](std::uint64_t& count) { count = reader.word(); });
   m_added += counters;
   for (const int tile : readTiles(reader, m_result->film))
-    m_pass->takeBack(tile);
+    m_pass->returnTile(tile);
 }
 
 /// Leases tiles to all idle workers. The caller holds m_mutex.
-void Lender::lendAll() {
-  for (std::size_t rank = 1; rank < m_borrowers.size(); ++rank) {
-    Borrower& worker = m_borrowers[rank];
-    if (m_monitor->stop || m_pass->left() == 0)
+void Scheduler::dispatchTiles() {
+  for (std::size_t rank = 1; rank < m_workers.size(); ++rank) {
+    Worker& worker = m_workers[rank];
+    if (m_monitor->stop || m_pass->tilesLeft() == 0)
       return;
-    if (!worker.waitReadable)
+    if (!worker.isIdle)
       continue;
-    worker.waitReadable = false;
-    m_ranks.send(static_cast<int>(rank), loanFor(worker));
+    worker.isIdle = false;
+    m_ranks.send(static_cast<int>(rank), makeLease(worker));
   }
 }
 
 /// Leases a fraction of the pass's remaining tiles. Leases shrink toward the end of the pass, so
 /// that all ranks finish it together. The caller holds m_mutex.
-Message Lender::loanFor(Borrower& worker) {
-  const std::size_t fair = m_pass->left() / (2 * m_borrowers.size());
+Message Scheduler::makeLease(Worker& worker) {
+  const std::size_t fair = m_pass->tilesLeft() / (2 * m_workers.size());
   const std::size_t wanted = std::min(std::max(fair, 2 * worker.threads), maxLeaseTiles);
   Message message = {leaseTag, m_result->finishedSamples, m_result->begunSamples};
   writeTiles(m_pass->take(wanted), m_result->film, message);
   const std::vector<float>& plan = m_result->last.plan.noise();
-  if (!plan.empty() && !std::exchange(worker.knowsPlan, true))
+  if (!plan.empty() && !std::exchange(worker.hasPlan, true))
     for (const float s : plan)
       message.push_back(std::bit_cast<std::uint32_t>(s));
   return message;
 }
 
-Counters Lender::join(const RenderMonitor& monitor) {
-  for (const Rests poller;;) {
+Counters Scheduler::join(const RenderMonitor& monitor) {
+  for (const BackoffPoller poller;;) {
     {
       const std::lock_guard lock(m_mutex);
-      if (m_pass->whole() || monitor.stop ||
+      if (m_pass->isComplete() || monitor.stop ||
           (monitor.isCheckpointDue && monitor.isCheckpointDue())) {
         m_pass = nullptr;
         return std::exchange(m_added, {});
       }
     }
-    poller.rest();
+    poller.wait();
   }
 }
 
-bool Lender::dismiss(bool isStopped) {
-  constexpr double maxSeconds = 2.0; // s
+bool Scheduler::stopWorkers(bool isStopped) {
+  constexpr double maxSeconds = 2.0;
   m_thread = {};
   const bool isBegun = m_monitor != nullptr;
   for (int rank = 1; rank < m_ranks.count(); ++rank)
     m_ranks.send(rank, {stopTag});
-  std::size_t isBusy = 0;
-  for (std::size_t rank = 1; isBegun && rank < m_borrowers.size(); ++rank)
-    isBusy += m_borrowers[rank].waitReadable ? 0 : 1;
+  std::size_t busyCount = 0;
+  for (std::size_t rank = 1; isBegun && rank < m_workers.size(); ++rank)
+    busyCount += m_workers[rank].isIdle ? 0 : 1;
   const Stopwatch watch;
-  const Rests poller;
-  while (isBusy > 0 && (!isStopped || watch.seconds() < maxSeconds)) {
+  const BackoffPoller poller;
+  while (busyCount > 0 && (!isStopped || watch.seconds() < maxSeconds)) {
     if (m_ranks.receive())
-      --isBusy;
+      --busyCount;
     else
-      poller.rest();
+      poller.wait();
   }
-  return isBusy == 0;
+  return busyCount == 0;
 }
 
 // ---- other ranks
 
-bool isRecruited(Ranks& ranks) {
-  for (const Rests poller;;) {
-    if (const std::optional<Received> measureIrradiance = ranks.receive())
-      return measureIrradiance->message.front() == startTag;
-    poller.rest();
+bool waitForStart(Ranks& ranks) {
+  for (const BackoffPoller poller;;) {
+    if (const std::optional<ReceivedMessage> received = ranks.receive())
+      return received->message.front() == startTag;
+    poller.wait();
   }
 }
 
-void borrow(Ranks& ranks, const SceneView& scene, const RenderSettings& settings,
-            RenderMonitor& monitor) {
+void runWorker(Ranks& ranks, const SceneView& scene, const RenderSettings& settings,
+               RenderMonitor& monitor) {
   LeasedTiles tiles(ranks, monitor);
   renderLeases(scene, settings, monitor,
                [&tiles](RenderResult& result) { return tiles.next(result); });

@@ -33,8 +33,8 @@ std::vector<Vec2> spreadPoints(int count, double radius) {
 /// Normal of the frame, tilted toward its two other axes by `angles`, radians.
 Vec3 tiltNormal(const Frame& frame, const Vec2& angles) {
   const double angle = angles.norm();
-  const double perAngle = angle > 0.0 ? std::sin(angle) / angle : 1.0;
-  return frame.toWorld({perAngle * angles.x(), perAngle * angles.y(), std::cos(angle)});
+  const double sinc = angle > 0.0 ? std::sin(angle) / angle : 1.0;
+  return frame.toWorld({sinc * angles.x(), sinc * angles.y(), std::cos(angle)});
 }
 
 std::vector<double> computeScores(const ViewScorer& scorer, const std::vector<Vec3>& directions,
@@ -47,7 +47,7 @@ std::vector<double> computeScores(const ViewScorer& scorer, const std::vector<Ve
 
 /// Best of the directions on the sphere. Scores are weighted means over neighboring directions.
 Vec3 searchCoarse(const ViewScorer& scorer) {
-  constexpr double near = 15.0 * degree;
+  constexpr double sigma = 15.0 * degree;
   constexpr std::size_t rays = 1024;
   const std::vector<Vec3> directions = spreadDirections(256);
   const std::vector<double> scores = computeScores(scorer, directions, rays);
@@ -56,7 +56,7 @@ Vec3 searchCoarse(const ViewScorer& scorer) {
   for (const Vec3& direction : directions) {
     double sum = 0.0, weights = 0.0;
     for (std::size_t i = 0; i < directions.size(); ++i) {
-      const double weight = std::exp((direction.dot(directions[i]) - 1.0) / (near * near));
+      const double weight = std::exp((direction.dot(directions[i]) - 1.0) / (sigma * sigma));
       sum += weight * scores[i];
       weights += weight;
     }
@@ -69,16 +69,16 @@ Vec3 searchCoarse(const ViewScorer& scorer) {
 }
 
 /// Step from the center of the points to the maximum of a quadratic that is fitted to their scores.
-/// The fit has Gaussian weights of standard deviation `near`. The step is at most `near` long, and
-/// goes uphill if there is no maximum. Normal equations suffice: with `near` as the unit of length
-/// they are well-conditioned.
+/// The fit has Gaussian weights of standard deviation `sigma`. The step is at most `sigma` long; if
+/// there is no maximum, it follows the gradient. Normal equations suffice: with `sigma` as the unit
+/// of length they are well-conditioned.
 Vec2 stepToMaximum(const std::vector<Vec2>& points, const std::vector<double>& scores,
-                   double near) {
+                   double sigma) {
   using Terms = Eigen::Matrix<double, 6, 1>;
   Eigen::Matrix<double, 6, 6> products = Eigen::Matrix<double, 6, 6>::Zero();
   Terms right = Terms::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec2 p = points[i] / near;
+    const Vec2 p = points[i] / sigma;
     const double weight = std::exp(-0.5 * p.squaredNorm());
     Terms terms;
     terms << 1.0, p.x(), p.y(), p.x() * p.x(), p.x() * p.y(), p.y() * p.y();
@@ -93,11 +93,11 @@ Vec2 stepToMaximum(const std::vector<Vec2>& points, const std::vector<double>& s
   const Vec2 step = hasMaximum ? Vec2(-(yy * inverse) * slope.x() + xy * inverse * slope.y(),
                                       xy * inverse * slope.x() - xx * inverse * slope.y())
                                : slope;
-  return near * (hasMaximum && step.norm() < 1.0 ? step : step.stableNormalized());
+  return sigma * (hasMaximum && step.norm() < 1.0 ? step : step.stableNormalized());
 }
 
 Vec3 searchNearby(const ViewScorer& scorer, const Vec3& start) {
-  constexpr double searchRadius = 25.0 * degree, near = 12.0 * degree, tolerance = 0.5 * degree;
+  constexpr double searchRadius = 25.0 * degree, sigma = 12.0 * degree, tolerance = 0.5 * degree;
   constexpr double minHits = 1024.0;
   const double hitFraction = scorer(start, 1024).hitFraction;
   const auto rays =
@@ -109,7 +109,7 @@ Vec3 searchNearby(const ViewScorer& scorer, const Vec3& start) {
     std::vector<Vec3> directions;
     for (const Vec2& point : points)
       directions.push_back(tiltNormal(frame, point));
-    const Vec2 step = stepToMaximum(points, computeScores(scorer, directions, rays), near);
+    const Vec2 step = stepToMaximum(points, computeScores(scorer, directions, rays), sigma);
     best = tiltNormal(frame, step);
     if (step.norm() < tolerance)
       break;
@@ -121,8 +121,8 @@ Vec3 searchNearby(const ViewScorer& scorer, const Vec3& start) {
 
 ViewDirection findBestView(const ViewScorer& scorer) {
   const Vec3 best = searchNearby(scorer, searchCoarse(scorer));
-  const bool isAlongBody = std::abs(best.z()) > std::cos(15.0 * degree);
-  return {best, isAlongBody ? Vec3::UnitY() : Vec3::UnitZ()};
+  const bool isNearSuperior = std::abs(best.z()) > std::cos(15.0 * degree);
+  return {best, isNearSuperior ? Vec3::UnitY() : Vec3::UnitZ()};
 }
 
 } // namespace fenestra

@@ -4,12 +4,12 @@
 // - area: projected area of the focus along d, mm².
 // - removed: fraction of the visible context that a clipping surface would remove: all context in
 //   front of the focus and, beside it, the context nearer than the mean depth of the focus.
-//   Opacity under the transfer function decides visibility, so air costs nothing.
+//   Context counts by its opacity under the transfer function, so air does not count.
 // - preference: 1 + 0.05 (d . anterior) - 0.1 (d . superior)², which favors upright anterior views
-//   among nearly equal ones.
+//   if scores are nearly equal.
 // Rays are parallel. The score depends only on volume, focus and transfer function, so the view
 // does not change with the projection, the clip or the image size. Scores are averaged over
-// neighboring directions, so that a small change of the focus hardly moves the view.
+// neighboring directions, so that a small change of the focus hardly changes the view.
 
 #include "clip/focus/FocusCells.h"
 #include "model/medium/TransferFunction.h"

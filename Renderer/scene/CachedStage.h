@@ -1,6 +1,6 @@
 #pragma once
 // CachedStage: a pure function with its last result. The arguments are the cache key: numbers and
-// names by value, results of earlier stages by handle. So nothing needs explicit invalidation.
+// names by value, results of earlier stages by handle. No explicit invalidation is needed.
 
 #include "base/Stopwatch.h"
 
@@ -17,7 +17,6 @@ using Handle = std::shared_ptr<const Result>;
 template <auto function, typename Type = decltype(function)>
 class CachedStage;
 
-/// For free functions.
 template <auto function, typename Result, typename... Arguments>
 class CachedStage<function, Result (*)(Arguments...)> {
 public:

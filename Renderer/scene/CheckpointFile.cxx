@@ -118,20 +118,20 @@ CheckpointFile::CheckpointFile(const fs::path& path) : m_path(path) {
   open(end + 1).read(text.data(), static_cast<std::streamsize>(text.size()));
   m_header = parseJson(text, path.string());
   const JsonNode header(m_header, path.string());
-  constexpr int largest = 1 << 14; // of --size
-  const std::vector<double> pixels = header.at("size").numbers(2, 1, largest),
-                            part = header.at("part").numbers(2, 0, maxShards);
-  m_width = static_cast<int>(pixels[0]);
-  m_height = static_cast<int>(pixels[1]);
-  m_shard = {static_cast<int>(part[0]), static_cast<int>(part[1])};
+  constexpr int maxSide = 1 << 14; // as --size
+  const std::vector<double> sides = header.at("size").numbers(2, 1, maxSide),
+                            shard = header.at("part").numbers(2, 0, maxShards);
+  m_width = static_cast<int>(sides[0]);
+  m_height = static_cast<int>(sides[1]);
+  m_shard = {static_cast<int>(shard[0]), static_cast<int>(shard[1])};
   m_hasPlan = header.at("hasPlan").boolean();
   if (m_shard.index >= m_shard.count || !header.at("made").isObject())
     throw makeDamageError();
   m_pixelsBegin = end + 1 + *bytes;
   m_planBegin = m_pixelsBegin + sizeof(PixelWords) * countPixels(m_width, m_height, m_shard);
-  const std::uint64_t all =
+  const std::uint64_t pixels =
       static_cast<std::uint64_t>(m_width) * static_cast<std::uint64_t>(m_height);
-  if (size != m_planBegin + (m_hasPlan ? all * sizeof(float) : 0) + sizeof digest)
+  if (size != m_planBegin + (m_hasPlan ? pixels * sizeof(float) : 0) + sizeof digest)
     throw makeDamageError();
 }
 
@@ -164,8 +164,8 @@ Counters CheckpointFile::counters() const {
 
 RenderResult CheckpointFile::readProgress() const {
   const JsonNode header(m_header, m_path.string());
-  constexpr double largestBlock = 1024.0;
-  const auto block = static_cast<std::uint32_t>(header.at("block").number(1.0, largestBlock));
+  constexpr double maxBlockSize = 1024.0;
+  const auto block = static_cast<std::uint32_t>(header.at("block").number(1.0, maxBlockSize));
   RenderResult result{Film(m_width, m_height, Sampler::hasIndependentHalfBuffers, block)};
   result.target = target();
   result.counters = counters();

@@ -1,8 +1,8 @@
 #pragma once
 // Checkpoint files. A checkpoint stores the sums of a render, so that the render resumes as if it
-// had not been interrupted; a shard's checkpoint holds its tiles only, and `merge` joins shards.
-// The next sample index of a pixel is its sample count, so tiles may be ahead of the current pass.
-// The file is part of this layer because image must not depend on files, nor files on render.
+// had not been interrupted. A shard's checkpoint holds only its tiles; `merge` joins shards. The
+// next sample index of a pixel is its sample count, so tiles may be ahead of the current pass. This
+// class is not in `image` or `files`: `image` must not depend on `files`, nor `files` on `render`.
 //
 //   fenestra film 1 BYTES\n      format version, and size of the next line
 //   {...}\n                      JSON header: image size, shard, progress and metadata
@@ -10,7 +10,7 @@
 //   plan                         floats, if the header says so (SamplePlan::noise)
 //   digest                       of all bytes before (io/Digest)
 //
-// Numbers are little-endian. All have 8 bytes, counts included, except those of the plan.
+// Numbers are little-endian. All numbers, counts included, have 8 bytes; those of the plan have 4.
 
 #include "integrator/render/Render.h"
 

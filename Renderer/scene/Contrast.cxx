@@ -21,11 +21,11 @@ Rgb meanReflectance(const std::vector<double>& scalars, double g, const AlbedoOf
 }
 
 /// Linear display color of a medium with this reflectance.
-Rgb toDisplayLight(const Rgb& seen) {
+Rgb toDisplayLight(const Rgb& reflectance) {
   constexpr double light = 1.1;
   std::vector<float> pixel(4, 1.0F);
   for (int c = 0; c < 3; ++c)
-    pixel[static_cast<std::size_t>(c)] = static_cast<float>(light * seen[c]);
+    pixel[static_cast<std::size_t>(c)] = static_cast<float>(light * reflectance[c]);
   pixel = toDisplay(pixel, {DisplayView::film});
   return decodeSrgb(Rgb(double{pixel[0]}, double{pixel[1]}, double{pixel[2]}));
 }
@@ -40,9 +40,9 @@ double Contrast::score() const {
 Contrast measureContrast(const Rgb& focus, const Rgb& context,
                          double (*difference)(const Lab&, const Lab&)) {
   Contrast contrast = {};
-  for (const ColorVision sight : colorVisions)
-    contrast.deltaE[static_cast<std::size_t>(sight)] =
-        difference(toLab(simulateVision(sight, focus)), toLab(simulateVision(sight, context)));
+  for (const ColorVision vision : colorVisions)
+    contrast.deltaE[static_cast<std::size_t>(vision)] =
+        difference(toLab(simulateVision(vision, focus)), toLab(simulateVision(vision, context)));
   contrast.deltaL = std::abs(toLab(focus).L - toLab(context).L);
   return contrast;
 }

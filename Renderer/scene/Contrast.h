@@ -47,8 +47,8 @@ inline constexpr double mutedSaturation = 0.35, graySaturation = 0.0;
 
 /// Chooses the saturation of the context. `requested`: the user's value. Without one, the first of
 /// 1, `mutedSaturation` and `graySaturation` whose score exceeds 1 is used, else the one with the
-/// best score (the most saturated among equals). Gray is needed for a brain in a head: with the
-/// muted context the deltaE for protan vision was 8 of the required 12.
+/// best score (the most saturated among equals). A brain in a head needs gray: with the muted
+/// context, deltaE for red-blind (protan) vision was 8 of the required 12.
 FocusContrast chooseSaturation(const std::optional<double>& requested, const Mask& focus,
                                const Volume& volume, const TransferFunction& transfer);
 

@@ -24,18 +24,18 @@ std::array<double, 2> findRobustRange(const Volume& volume);
 
 /// Threshold that separates a body from the surrounding air: -300 HU in CT, else Otsu's threshold
 /// (1979) within the robust range. Empty if a tenth of a volume other than CT has the minimum
-/// value: it is masked (by skull stripping, for example), and may not contain a body surface.
+/// value: such a volume is masked, for example by skull stripping, and may lack the body surface.
 std::optional<double> findAirThreshold(const Volume& volume);
 
-/// Fraction of the focus voxels, 0 to 1, with zero extinction. An unsuitable transfer function
-/// leaves a hole in place of the focus. Uses at most about a million voxels of the mask.
+/// Fraction of the focus voxels, 0 to 1, with zero extinction: a high value means an unsuitable
+/// transfer function. Uses at most about a million voxels of the mask.
 double transparentFraction(const Mask& focus, const Volume& volume,
                            const TransferFunction& transfer);
 
 /// Transfer function for volumes without an absolute scale (MR, ultrasound, stored values). The
 /// opacity rises from transparent at the background level to opaque at the 99.5th percentile.
-/// Extinction is relative to the size of the volume. A constant volume becomes a uniform haze
-/// without shading.
+/// Extinction is relative to the size of the volume. A constant volume becomes a thin uniform
+/// medium without shading.
 TransferFunction makeRelativeTransfer(const Volume& volume);
 
 /// Camera pose of a view request for this volume and focus. Named views look along the patient's

@@ -16,7 +16,7 @@ public:
     if (m_count++ % m_stride != 0)
       return;
     m_values.push_back(value);
-    if (m_values.size() < most)
+    if (m_values.size() < maxValues)
       return;
     for (std::size_t i = 0; 2 * i < m_values.size(); ++i)
       m_values[i] = m_values[2 * i];
@@ -32,7 +32,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t most = 1 << 15;
+  static constexpr std::size_t maxValues = 1 << 15;
 
   std::vector<double> m_values;
   std::size_t m_count = 0, m_stride = 1;
@@ -51,12 +51,12 @@ public:
         m_transfer(transfer) {}
 
   /// Calls visit(focus voxel, step to its neighbor) for each face. Rows are skipped so that at most
-  /// about `mostVoxels` voxels of the mask are tested.
+  /// about `maxVoxels` voxels of the mask are tested.
   template <typename Visit>
   void forEachFace(const Visit& visit) const {
-    constexpr double mostVoxels = 4e6;
+    constexpr double maxVoxels = 4e6;
     const Size3& size = m_focus.grid.size;
-    const double surplus = static_cast<double>(m_focus.voxels.size()) / mostVoxels;
+    const double surplus = static_cast<double>(m_focus.voxels.size()) / maxVoxels;
     const auto stride = static_cast<std::int64_t>(std::ceil(std::sqrt(std::max(1.0, surplus))));
     for (std::int64_t z = 0; z < size.z(); z += stride)
       for (std::int64_t y = 0; y < size.y(); y += stride)
@@ -121,12 +121,12 @@ public:
   /// Component with the largest label weight among those of a side; empty if all are 0.
   std::optional<std::uint8_t> at(const Size3& voxel, bool focusSide) const {
     std::optional<std::uint8_t> greatest;
-    double most = 0.0;
+    double maxWeight = 0.0;
     m_weights.forEachWeight(m_toWeights * voxel.cast<double>(),
                             [&](std::uint8_t component, double weight) {
-                              if (m_isFocus[component] == focusSide && weight > most) {
+                              if (m_isFocus[component] == focusSide && weight > maxWeight) {
                                 greatest = component;
-                                most = weight;
+                                maxWeight = weight;
                               }
                             });
     return greatest;
@@ -138,7 +138,7 @@ private:
   const std::vector<bool>& m_isFocus;
 };
 
-/// Visible scalars on one side of a face, as far as they belong to the component nearest to it.
+/// Visible scalars on one side of a face, of the component nearest to the face only.
 struct Side {
   std::optional<std::uint8_t> component = {};
   std::vector<double> scalars = {};
@@ -178,9 +178,9 @@ std::vector<ComponentInterface> collectInterfaces(const InterfaceSampler<Voxel>&
     std::ranges::for_each(context.scalars, [&](double scalar) { part.context.add(scalar); });
   });
   std::vector<ComponentInterface> interfaces;
-  for (const auto& [of, part] : parts)
+  for (const auto& [sides, part] : parts)
     interfaces.push_back(
-        {of.first, of.second, part.area, part.focus.median(), part.context.median()});
+        {sides.first, sides.second, part.area, part.focus.median(), part.context.median()});
   std::ranges::stable_sort(interfaces, std::greater{}, &ComponentInterface::area);
   return interfaces;
 }

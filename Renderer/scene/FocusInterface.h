@@ -11,8 +11,8 @@
 
 namespace fenestra {
 
-/// Scalars of the three voxels on either side of each face, as far as the transfer function makes
-/// them visible. Subsampled to about ten thousand per side.
+/// Scalars of the three voxels on either side of each face, without those that the transfer
+/// function makes transparent. Subsampled to about ten thousand per side.
 struct InterfaceScalars {
   std::vector<double> focus, context;
 };

@@ -10,23 +10,23 @@
 namespace fenestra {
 namespace {
 
-constexpr std::array voxelTypes = {"uint8", "int16", "uint16", "float"}; ///< as in Voxels
+constexpr std::array voxelTypes = {"uint8", "int16", "uint16", "float"}; ///< by Voxels::index()
 
-/// True if most pairs of adjacent voxels above the minimum are equal. At least 59 % were in all
-/// available label maps, and at most 8 % in scans.
+/// True if most pairs of adjacent voxels above the minimum are equal. In the available data this
+/// held for at least 59 % of the pairs of a label map, and for at most 8 % of a scan.
 bool isLikelyLabelMap(const Volume& volume) {
-  constexpr double most = 0.5;
+  constexpr double threshold = 0.5;
   if (volume.minimum < 0.0 || std::holds_alternative<LargeArray<float>>(volume.voxels))
     return false;
   const auto areMostEqual = [&](const auto& voxels) {
-    const auto isLeast = [&](auto voxel) { return static_cast<double>(voxel) == volume.minimum; };
+    const auto isMinimum = [&](auto voxel) { return static_cast<double>(voxel) == volume.minimum; };
     std::size_t pairs = 0, equal = 0;
     for (std::size_t i = 1; i < voxels.size(); ++i)
-      if (!isLeast(voxels[i]) || !isLeast(voxels[i - 1])) {
+      if (!isMinimum(voxels[i]) || !isMinimum(voxels[i - 1])) {
         ++pairs;
         equal += voxels[i] == voxels[i - 1];
       }
-    return static_cast<double>(equal) > most * static_cast<double>(pairs);
+    return static_cast<double>(equal) > threshold * static_cast<double>(pairs);
   };
   return std::visit(areMostEqual, volume.voxels);
 }
@@ -35,7 +35,7 @@ bool hasSegmentationName(const std::filesystem::path& path) {
   return path.filename().string().find(".seg.") != std::string::npos;
 }
 
-/// What the rest of an inspection needs of a volume, which is released before segmentations are
+/// Properties of a volume that outlive its voxels, which are released before segmentations are
 /// read.
 struct FileVolume {
   std::optional<Grid> grid = {};     ///< empty: unreadable
@@ -154,12 +154,12 @@ Json makeReport(const RenderRequest& request, const char* kind) {
 }
 
 Json makeRenderReport() {
-  Json use;
+  Json render;
   for (const char* part :
        {"volume", "look", "crop", "camera", "background", "segmentation", "segmentationProblem"})
-    use[part] = nullptr;
-  use["stored"] = Json::array();
-  return use;
+    render[part] = nullptr;
+  render["stored"] = Json::array();
+  return render;
 }
 
 Json volumeJson(const Volume& volume, const std::string& id) {

@@ -9,7 +9,7 @@ namespace fenestra {
 
 /// The report, one JSON object. Lengths are in mm, segment volumes in ml, positions in RAS, and
 /// colors are display-encoded in [0, 1]. Absent values are null. Nodes refer to each other by id.
-/// Strings are copied from the files unchanged, so printers must escape control characters. The
+/// Strings are copied from the files unchanged: escape control characters before printing them. The
 /// keys are stable:
 ///
 ///     input, kind ("scene" | "volume" | "segmentation" | "dicom"), version (of Slicer)
@@ -27,12 +27,13 @@ namespace fenestra {
 ///     series [uid, number, description, modality, files]
 ///     others {tag: count}
 ///     materials [name, kind, color (like a segment's material)]: the library
-///     render: null if the choice of nodes is ambiguous, else what a render uses, as far as it can
-///       be read: volume {id, name, size, spacing, center, voxelType, range, transforms [id,
-///       innermost first]}, look {source ("volumeProperty" | "volumeDisplay" | "preset" | "range"),
-///       id, name}, crop {id, name, edges, center}, camera {id, name, POSE}, background {view,
-///       bottom, top}, segmentation (id or file in which a focus is searched), segmentationProblem
-///       (why it is ambiguous), stored [option stored in the scene by Fenestra's extension]
+///     render: null if the choice of nodes is ambiguous, else what a render uses, with null for
+///       unreadable parts: volume {id, name, size, spacing, center, voxelType, range, transforms
+///       [id, innermost first]}, look {source ("volumeProperty" | "volumeDisplay" | "preset" |
+///       "range"), id, name}, crop {id, name, edges, center}, camera {id, name, POSE}, background
+///       {view, bottom, top}, segmentation (id or file in which a focus is searched),
+///       segmentationProblem (why it is ambiguous), stored [option stored in the scene by
+///       Fenestra's extension]
 ///     refused: null, or the error message of a render
 ///     warnings [line], ignored [line]
 ///

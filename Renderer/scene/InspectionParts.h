@@ -24,7 +24,6 @@ auto tryRead(Read&& read, Json& line) -> std::optional<decltype(read())> {
   }
 }
 
-/// Null if the text is empty.
 Json nullIfEmpty(const std::string& text);
 
 /// An empty report, and an empty member `render`.

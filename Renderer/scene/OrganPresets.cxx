@@ -44,11 +44,11 @@ std::vector<SegmentInfo> findFocusSegments(const SegmentPatterns& patterns,
 }
 
 std::string joinSegmentNames(const std::vector<SegmentInfo>& segments) {
-  constexpr std::size_t most = 12;
-  const auto first = std::span(segments).first(std::min(most, segments.size()));
+  constexpr std::size_t limit = 12;
+  const auto first = std::span(segments).first(std::min(limit, segments.size()));
   const std::string text =
       join(first, ", ", [](const SegmentInfo& segment) { return sanitize(segment.name); });
-  return segments.size() > most ? concat(text, " and ", segments.size() - most, " more") : text;
+  return segments.size() > limit ? concat(text, " and ", segments.size() - limit, " more") : text;
 }
 
 const OrganPreset& findMatchingPreset(const std::vector<OrganPreset>& presets,

@@ -1,7 +1,7 @@
 #pragma once
-// Matching of organ presets and segments. A preset only supplies default options: its segments are
-// found by name, without reading labels, and all later stages see options that a user could have
-// given. Explicit options override a preset, and an explicit preset overrides the scene's options.
+// Matching of organ presets and segments. A preset only supplies default options. Its segments are
+// found by name, without reading labels, so later stages get options that a user could have given.
+// Explicit options override a preset, and an explicit preset overrides the scene's options.
 
 #include "files/appearance/PresetReader.h"
 #include "files/segments/SegmentationReader.h"

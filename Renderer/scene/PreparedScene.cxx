@@ -1,7 +1,7 @@
 #include "scene/PreparedScene.h"
 
-#include "scene/SegmentMaterials.h"
 #include "base/Text.h"
+#include "scene/SegmentMaterials.h"
 
 #include <algorithm>
 
@@ -80,7 +80,8 @@ std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segment
   if (r.materials)
     return *r.materials;
   const bool isAdjusted = !r.focus.empty() && !r.focusStyle.contextSaturation;
-  return isAdjusted && isAnyKnown(segments->segmentation, r.focus) ? autoMaterials : noMaterials;
+  return isAdjusted && hasKnownMaterial(segments->segmentation, r.focus) ? autoMaterials
+                                                                         : noMaterials;
 }
 
 void PreparedScene::makeTint(const std::string& name) {
@@ -102,7 +103,7 @@ void PreparedScene::makeTint(const std::string& name) {
       m_interfaces.get(m_volume.result(), m_focus.result(), transfer, weights, plan->isFocus);
   const auto contrast = m_tintContrast.get(interfaces, plan, tint, materials, transfer,
                                            r.focusStyle.contextSaturation);
-  m_contrastedTint.get(tint, plan, contrast, transfer);
+  m_adjustedTint.get(tint, plan, contrast, transfer);
 }
 
 StageSeconds PreparedScene::seconds() const {
@@ -113,7 +114,7 @@ StageSeconds PreparedScene::seconds() const {
           .materials = m_materials.seconds() + m_hasVoxels.seconds() + m_plan.seconds() +
                        m_skin.seconds() + m_labelWeights.seconds() + m_tint.seconds() +
                        m_interfaces.seconds() + m_tintContrast.seconds() +
-                       m_contrastedTint.seconds() + m_mixture.seconds(),
+                       m_adjustedTint.seconds() + m_mixture.seconds(),
           .classify = m_minMaxGrid.seconds() + m_occupiedBounds.seconds() + m_contrast.seconds() +
                       m_style.seconds() + m_majorants.seconds(),
           .focus = clip.focusSeconds,
@@ -131,7 +132,7 @@ UpdatedStages PreparedScene::updatedStages() const {
           m_clip.isUpdated(),
           m_minMaxGrid.isUpdated(),
           m_majorants.isUpdated(),
-          m_tint.isUpdated() || m_contrastedTint.isUpdated(),
+          m_tint.isUpdated() || m_adjustedTint.isUpdated(),
           m_labelWeights.isUpdated()};
 }
 

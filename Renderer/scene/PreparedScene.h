@@ -10,7 +10,7 @@
 
 namespace fenestra {
 
-/// Wall-clock seconds by stage, for the stats; 0: the result was shared.
+/// Wall-clock seconds per stage, for the statistics; 0: the result was shared.
 struct StageSeconds {
   double load = 0.0, materials = 0.0, classify = 0.0, focus = 0.0, spline = 0.0, fill = 0.0,
          features = 0.0;
@@ -83,7 +83,7 @@ private:
   std::string resolveMaterials(const Handle<SegmentsInput>& segments) const;
   void makeTint(const std::string& name);
   const Handle<Tint>& currentTint() const {
-    return m_contrastedTint.result() ? m_contrastedTint.result() : m_tint.result();
+    return m_adjustedTint.result() ? m_adjustedTint.result() : m_tint.result();
   }
   TintOrMixture tintOrMixture() const {
     return m_mixture.result() ? TintOrMixture{nullptr, m_mixture.result()}
@@ -94,7 +94,7 @@ private:
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
                     s.m_focus, s.m_sceneTransfer, s.m_transfer, s.m_materials, s.m_hasVoxels,
                     s.m_skin, s.m_plan, s.m_labelWeights, s.m_tint, s.m_interfaces,
-                    s.m_tintContrast, s.m_contrastedTint, s.m_mixture, s.m_focusWarnings, s.m_view,
+                    s.m_tintContrast, s.m_adjustedTint, s.m_mixture, s.m_focusWarnings, s.m_view,
                     s.m_minMaxGrid, s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip,
                     s.m_contrast, s.m_style, s.m_majorants, s.m_features);
   }
@@ -118,7 +118,7 @@ private:
   CachedStage<&findTintInterfaces>
       m_interfaces; ///< this and the next two: unused unless colors are adjusted
   CachedStage<&adjustTintContrast> m_tintContrast;
-  CachedStage<&adjustTint> m_contrastedTint;
+  CachedStage<&adjustTint> m_adjustedTint;
   CachedStage<&makeMixture> m_mixture; ///< unused if segments differ only in color
   CachedStage<&checkFocus> m_focusWarnings;
   CachedStage<&chooseView> m_view; ///< used only by automatic views

@@ -44,8 +44,8 @@ struct ClipRequest {
   bool operator==(const ClipRequest&) const = default;
 };
 
-/// Conversion of the focus labels to a mask (labels of materials are smoothed alike), and
-/// appearance of the context.
+/// Conversion of the focus labels to a mask, and appearance of the context. The labels of materials
+/// are smoothed like those of the focus.
 struct FocusRequest {
   MaskShaping shaping = {.smoothing = std::nullopt};
   double contextExtinction = 1.0; ///< factor of the extinction outside the focus, 0 to 1
@@ -101,8 +101,8 @@ struct RenderRequest {
   bool features = false; ///< compute the feature buffers of the denoiser
   bool measure = false;  ///< measure the clip; traces the focus even if no clip needs it
   FocusRequest focusStyle = {};
-  /// Half-width of the angular window over which a clipping surface is smoothed, degrees
-  /// (clip/surface/SteadySurface.h).
+  /// Half-width of the angular window over which a turntable's clipping surface is smoothed,
+  /// degrees (clip/surface/SteadySurface.h).
   double steadyDegrees = 0.0;
   /// Modality for which an organ preset chose `transfer`. A volume of another modality gets a
   /// default transfer function, and a warning.

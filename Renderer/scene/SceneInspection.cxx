@@ -70,50 +70,50 @@ private:
 
   /// Makes a PreparedScene to get volume, transfer function and camera; if that fails, reads each.
   void inspectRender() {
-    Json use = makeRenderReport();
+    Json render = makeRenderReport();
     m_report["warnings"] = m_plan->warnings;
     m_report["ignored"] = m_plan->ignored;
     std::optional<CameraPose> pose;
     if (const auto scene =
             tryRead([&] { return std::make_unique<PreparedScene>(m_request, m_input); },
                     m_report["refused"])) {
-      addVolume((*scene)->volume(), (*scene)->transferName(), use);
+      addVolume((*scene)->volume(), (*scene)->transferName(), render);
       pose = (*scene)->camera().pose();
       m_report["warnings"] = (*scene)->warnings();
     } else {
       if (const auto volume =
               tryRead([&] { return readSceneVolume(m_scene, *m_plan->volume); }, m_unused))
-        addVolume(*volume, nameOrEmpty(m_plan->property), use);
+        addVolume(*volume, nameOrEmpty(m_plan->property), render);
       if (m_plan->camera)
         pose = readCamera(*m_plan->camera, m_unused);
     }
     if (pose)
-      use["camera"] = poseJson(*pose, idOrEmpty(m_plan->camera), nameOrEmpty(m_plan->camera));
+      render["camera"] = poseJson(*pose, idOrEmpty(m_plan->camera), nameOrEmpty(m_plan->camera));
     if (m_plan->roi)
-      use["crop"] = cropJson(*m_plan->roi);
+      render["crop"] = cropJson(*m_plan->roi);
     if (m_plan->view) {
-      use["background"] = {{"view", nullIfEmpty(m_plan->view->id)}};
-      use["background"].update(backgroundColors(*m_plan->view));
+      render["background"] = {{"view", nullIfEmpty(m_plan->view->id)}};
+      render["background"].update(backgroundColors(*m_plan->view));
     }
-    use["segmentation"] = nullIfEmpty(idOrEmpty(m_plan->segmentation));
-    use["segmentationProblem"] = m_segmentationProblem;
-    markUsed(use["look"]);
-    m_report["render"] = std::move(use);
+    render["segmentation"] = nullIfEmpty(idOrEmpty(m_plan->segmentation));
+    render["segmentationProblem"] = m_segmentationProblem;
+    markUsed(render["look"]);
+    m_report["render"] = std::move(render);
   }
 
   /// Adds volume and transfer function. `transferName`: PreparedScene::transferName of the render.
-  void addVolume(const Volume& volume, const std::string& transferName, Json& use) {
+  void addVolume(const Volume& volume, const std::string& transferName, Json& render) {
     m_grid = volume.grid;
-    use["volume"] = volumeJson(volume, m_plan->volume->id);
-    use["volume"]["transforms"] = listParentTransforms(document(), *m_plan->volume);
+    render["volume"] = volumeJson(volume, m_plan->volume->id);
+    render["volume"]["transforms"] = listParentTransforms(document(), *m_plan->volume);
     const MrmlNode* property = m_plan->property;
     if (property && transferName == property->name)
-      use["look"] = transferJson("volumeProperty", property->id, property->name);
+      render["look"] = transferJson("volumeProperty", property->id, property->name);
     else if (m_plan->sliceDisplay)
-      use["look"] =
+      render["look"] =
           transferJson("volumeDisplay", m_plan->sliceDisplay->id, m_plan->sliceDisplay->name);
     else
-      use["look"] = defaultTransferJson(volume);
+      render["look"] = defaultTransferJson(volume);
   }
 
   Json cropJson(const MrmlNode& roi) {
@@ -188,10 +188,10 @@ private:
 
   /// True for unused nodes after the first 64 of a list: reading their files would take too long.
   bool isSkipped(const char* list, Json& node) const {
-    constexpr std::size_t mostRead = 64;
-    if (m_report[list].size() < mostRead || node["used"] == true)
+    constexpr std::size_t maxRead = 64;
+    if (m_report[list].size() < maxRead || node["used"] == true)
       return false;
-    node["problem"] = "not read: only the first " + std::to_string(mostRead) + " are";
+    node["problem"] = concat("not read, since only the first ", maxRead, " of a kind are read");
     return true;
   }
 

@@ -12,10 +12,10 @@
 namespace fenestra {
 namespace {
 
-/// What a rule matches of a segment, weakest first.
+/// Attribute of a segment that a rule matches, weakest first.
 enum class Match { none, name, region, category, type, typeAndRegion, value };
 
-struct Found {
+struct RuleMatch {
   Match match = Match::none;
   std::string reason;
 };
@@ -25,7 +25,7 @@ bool hasElement(const auto& list, const auto& value) {
 }
 
 /// Match by the segment's codes, which are empty if it has none.
-Found findCode(const MaterialRule& rule, const SegmentInfo& segment) {
+RuleMatch findCode(const MaterialRule& rule, const SegmentInfo& segment) {
   const std::vector<std::string>& codes = rule.patterns.codes;
   const std::string both = segment.type + "~" + segment.region;
   if (hasElement(codes, both))
@@ -40,9 +40,9 @@ Found findCode(const MaterialRule& rule, const SegmentInfo& segment) {
 }
 
 /// Strongest match of the rule; `words`: of the segment name.
-Found findMatch(const MaterialRule& rule, const SegmentInfo& segment,
-                const std::vector<std::string>& words) {
-  Found found = findCode(rule, segment);
+RuleMatch findMatch(const MaterialRule& rule, const SegmentInfo& segment,
+                    const std::vector<std::string>& words) {
+  RuleMatch found = findCode(rule, segment);
   if (hasElement(rule.values, segment.labelValue))
     found = {Match::value, concat("by value ", segment.labelValue)};
   if (found.match == Match::none)
@@ -56,12 +56,12 @@ Found findMatch(const MaterialRule& rule, const SegmentInfo& segment,
 std::optional<SegmentMaterial> matchRules(const SegmentInfo& segment, const MaterialTable& table) {
   const std::vector<std::string> words = splitName(segment.name);
   const MaterialRule* best = nullptr;
-  Found bestFound;
-  const auto rank = [](const MaterialRule& rule, const Found& found) {
+  RuleMatch bestFound;
+  const auto rank = [](const MaterialRule& rule, const RuleMatch& found) {
     return std::tuple(rule.isFromFile, found.match, found.match == Match::name ? rule.priority : 0);
   };
   for (const MaterialRule& rule : table.rules) {
-    Found found = findMatch(rule, segment, words);
+    RuleMatch found = findMatch(rule, segment, words);
     if (found.match != Match::none && (!best || rank(rule, found) > rank(*best, bestFound))) {
       best = &rule;
       bestFound = std::move(found);
@@ -126,7 +126,7 @@ std::vector<SegmentMaterial> assignMaterials(const std::vector<SegmentInfo>& seg
   return materials;
 }
 
-bool isAnyKnown(const Segmentation& segmentation, const std::vector<std::string>& selectors) {
+bool hasKnownMaterial(const Segmentation& segmentation, const std::vector<std::string>& selectors) {
   const std::vector<SegmentMaterial> all =
       assignMaterials(segmentation.segments(), materialLibrary());
   return std::ranges::any_of(selectors, [&](const std::string& selector) {

@@ -1,6 +1,6 @@
 #pragma once
-// Assignment of a material to each segment from its codes, name, label value or color. This is the
-// only place that applies rules: all lower layers see one SegmentMedium per segment.
+// Assigns a material to each segment by its codes, name, label value or color. Only this file
+// applies rules; lower layers get one SegmentMedium per segment.
 
 #include "files/appearance/MaterialReader.h"
 #include "files/segments/SegmentationReader.h"
@@ -34,6 +34,6 @@ std::vector<SegmentMaterial> assignMaterials(const std::vector<SegmentInfo>& seg
 
 /// True if at least one segment has a rule in the library or a color of its own. `selectors`: ids,
 /// names or label values. Throws Error (input) for one that does not exist.
-bool isAnyKnown(const Segmentation& segmentation, const std::vector<std::string>& selectors);
+bool hasKnownMaterial(const Segmentation& segmentation, const std::vector<std::string>& selectors);
 
 } // namespace fenestra

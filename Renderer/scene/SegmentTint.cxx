@@ -13,7 +13,7 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t mostComponents = 256; ///< a component index is one byte
+constexpr std::size_t maxComponents = 256; ///< a component index is one byte
 constexpr const char* skinMaterial = "skin";
 constexpr int skinPriority = 1;
 
@@ -62,8 +62,8 @@ bool hasSkin(const std::vector<SegmentMaterial>& all, const std::vector<bool>& h
 /// True if both media are equal under any transfer function; ignores priority.
 bool isSame(const SegmentMedium& a, const SegmentMedium& b) {
   const Material &m = a.material, &n = b.material;
-  const bool looksAlike = m.color == n.color && (!m.color || m.colorIsAlbedo == n.colorIsAlbedo);
-  if (!looksAlike || m.kind != n.kind || a.isClipped != b.isClipped || a.density != b.density)
+  const bool isSameColor = m.color == n.color && (!m.color || m.colorIsAlbedo == n.colorIsAlbedo);
+  if (!isSameColor || m.kind != n.kind || a.isClipped != b.isClipped || a.density != b.density)
     return false;
   return m.kind == MaterialKind::tint ||
          (m.extinction == n.extinction &&
@@ -81,8 +81,8 @@ std::uint8_t findComponent(const SegmentMaterial& material, const std::string& s
         plan.names[i] = name;
       return static_cast<std::uint8_t>(i);
     }
-  if (plan.components.size() == mostComponents)
-    throw inputError(source, "its segments have more than ", mostComponents - 1,
+  if (plan.components.size() == maxComponents)
+    throw inputError(source, "its segments have more than ", maxComponents - 1,
                      " materials; assign one material to several with --materials FILE");
   plan.components.push_back(material.medium);
   plan.names.push_back(segment);
@@ -111,7 +111,7 @@ void saturate(Mask& mask) {
     voxel = static_cast<std::uint8_t>(std::min(2 * voxel, int{mask.maxValue}));
 }
 
-/// Removes parts of component 0 that have lower priority than all others, so cover nothing.
+/// Removes parts of component 0 with lower priority than all others: they cover nothing.
 std::vector<TintPart> removeRedundant(std::vector<TintPart> parts) {
   const auto isColored = [](const TintPart& part) { return part.component != 0; };
   int lowest = std::numeric_limits<int>::max();
@@ -176,9 +176,9 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& input,
       segments[{component, all[i].medium.priority}].push_back(i);
     }
   const bool canGrow = isTintOnly(plan); // media stay inside their segments
-  for (auto& [of, places] : segments)
+  for (auto& [key, indices] : segments)
     plan.parts.push_back(
-        {std::move(places), of.second, of.first, canGrow && plan.isFocus[of.first]});
+        {std::move(indices), key.second, key.first, canGrow && plan.isFocus[key.first]});
   if (skin && skin->count > 0 && !hasSkin(all, *hasVoxels)) {
     const Material& material = materials->table.materials.at(skinMaterial);
     const std::uint8_t component =

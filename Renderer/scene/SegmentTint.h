@@ -1,9 +1,9 @@
 #pragma once
 // Media of a scene's segments, in cached stages (CachedStage.h). Codes and names assign each
 // segment to a component, labels give the components' weights per voxel, and the transfer function
-// converts colors to albedo. So a changed color does not require the labels again. Materials are
-// tints by default: a segmentation changes colors, but adds, moves or hides no surface. If segments
-// differ in more than color, the components become a mixture.
+// converts colors to albedo. A change of color therefore does not recompute the weights. Materials
+// are tints by default: they change colors, but add, move or hide no surface. If segments differ in
+// more than color, the components become a mixture.
 
 #include "model/medium/Mixture.h"
 #include "model/medium/Tint.h"
@@ -25,8 +25,8 @@ struct TintPart {
 
 struct TintPlan {
   std::vector<TintPart> parts; ///< at least one; detected skin is the last
-  /// At least one medium; its priority is that of the parts. Component 0 is the medium outside all
-  /// segments, and of every segment with an equal medium.
+  /// Media; `parts` hold their priorities. Component 0 is the medium outside all segments, and of
+  /// every segment with an equal medium.
   std::vector<SegmentMedium> components;
   std::vector<std::string> names; ///< per component: of its segment, or of a shared material
   std::vector<bool> isFocus;      ///< per component; all false if colors are not adjusted

@@ -17,10 +17,10 @@ TransferFunction fitToVolume(const TransferFile& transfer, const Volume& volume)
   return transfer.mapRange(low, high);
 }
 
-constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< as in Modality
+constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< by Modality
 
-/// Throws Error (input) if the extinction is too large. Time is proportional to the largest
-/// extinction because of null collisions, so a file could make paths practically endless.
+/// Throws Error (input) if the extinction is too large. Because of null collisions, render time is
+/// proportional to the largest extinction, so a file could make a render practically endless.
 void checkExtinction(const TransferFunction& transfer, const Volume& volume,
                      const std::string& name) {
   constexpr double maxDepth = 1e7; // optical depth across the volume
@@ -88,20 +88,20 @@ Domain makeDomain(const VolumeHandle& volume, const SettingsHandle& settings) {
   return {volume->volume.grid, settings->crop};
 }
 
-/// The choice of chooseTransfer, before shift and scale.
+/// As chooseTransfer(), before shift and scale.
 TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>& named,
                               const Handle<SceneTransfer>& scene,
-                              const std::optional<Modality>& madeFor) {
+                              const std::optional<Modality>& modality) {
   std::vector<std::string> warnings;
-  if (named && !madeFor && named->source.starts_with("ct-") && !canSuit(Modality::ct, volume))
+  if (named && !modality && named->source.starts_with("ct-") && !canSuit(Modality::ct, volume))
     warnings.push_back("the transfer function " + named->source +
                        " is for CT, but this volume does not seem to be CT; move it with --shift, "
                        "or choose another with --transfer");
-  if (named && (!madeFor || canSuit(*madeFor, volume)))
+  if (named && (!modality || canSuit(*modality, volume)))
     return {fitToVolume(named->transfer, volume), named->source, warnings};
   if (named)
     warnings.push_back(concat(
-        "the preset's transfer function is for ", modalities[static_cast<std::size_t>(*madeFor)],
+        "the preset's transfer function is for ", modalities[static_cast<std::size_t>(*modality)],
         ", which does not seem to be this volume's modality; using a default, unless "
         "--transfer names another"));
   else if (scene->transfer)
@@ -197,10 +197,10 @@ FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<st
 
 TransferChoice chooseTransfer(const VolumeHandle& read, const Handle<NamedTransfer>& named,
                               const Handle<SceneTransfer>& scene,
-                              const std::optional<Modality>& madeFor, double shift,
+                              const std::optional<Modality>& modality, double shift,
                               double density) {
   const Volume& volume = read->volume;
-  TransferChoice transfer = selectTransfer(volume, named, scene, madeFor);
+  TransferChoice transfer = selectTransfer(volume, named, scene, modality);
   transfer.function = transfer.function.withShift(shift).withDensity(density);
   checkExtinction(transfer.function, volume, named ? transfer.source : volume.name);
   if (transfer.function.shading && volume.minimum == volume.maximum)
@@ -212,11 +212,11 @@ TransferChoice chooseTransfer(const VolumeHandle& read, const Handle<NamedTransf
 
 std::vector<std::string> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
                                     const Handle<TransferChoice>& transfer) {
-  constexpr double most = 0.5;
+  constexpr double maxFraction = 0.5;
   if (!focus->mask)
     return {};
   const double fraction = transparentFraction(*focus->mask, volume->volume, transfer->function);
-  if (fraction <= most)
+  if (fraction <= maxFraction)
     return {};
   return {concat("the transfer function ", transfer->source, " makes ",
                  std::lround(100.0 * fraction),
@@ -240,11 +240,10 @@ Camera placeCamera(const ViewRequest& view, int width, int height, const VolumeH
                    const Handle<ViewDirection>& best) {
   if (settings->camera)
     return {adjustView(view, *settings->camera), width, height};
-  const Domain whole = makeDomain(volume, settings);
-  const Domain part = whole.intersect(bounds);
-  const bool isEmpty = part.indexCorners().empty();
-  return {frameView(view, isEmpty ? whole : part, maskOrNull(focus), width, height, best.get()),
-          width, height};
+  const Domain domain = makeDomain(volume, settings);
+  const Domain occupied = domain.intersect(bounds);
+  const Domain& framed = occupied.indexCorners().empty() ? domain : occupied;
+  return {frameView(view, framed, maskOrNull(focus), width, height, best.get()), width, height};
 }
 
 bool FramedLights::operator==(const FramedLights& other) const {

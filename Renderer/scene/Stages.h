@@ -38,12 +38,13 @@ struct TransferChoice {
   std::string source; ///< a file, a preset, a node, or "by the volume's range"
   std::vector<std::string> warnings = {};
 };
-/// Chooses the transfer function: `named`, unless it was made for a modality other than the
-/// volume's, else the scene's, else a default for the volume. Then shifts it by `shift` and scales
-/// its extinction by `density`. Throws Error (input) if the volume cannot be rendered with it.
+/// Chooses the transfer function: `named`, unless `modality` is not the volume's, else the
+/// scene's, else a default for the volume. Then shifts it by `shift` and scales its extinction by
+/// `density`. Throws Error (input) if the volume cannot be rendered with it.
 TransferChoice chooseTransfer(const VolumeHandle& volume, const Handle<NamedTransfer>& named,
                               const Handle<SceneTransfer>& scene,
-                              const std::optional<Modality>& madeFor, double shift, double density);
+                              const std::optional<Modality>& modality, double shift,
+                              double density);
 
 /// Warns if the transfer function leaves most of the focus transparent.
 std::vector<std::string> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,

@@ -22,14 +22,14 @@ Rgb reduceToGamut(const Lab& lab) {
   const auto withChroma = [&](double fraction) {
     return toLinear({lab.L, fraction * lab.a, fraction * lab.b});
   };
-  double least = 0.0, most = 1.0;
-  if (isInGamut(withChroma(most)))
-    return withChroma(most);
+  double low = 0.0, high = 1.0;
+  if (isInGamut(withChroma(high)))
+    return withChroma(high);
   for (int i = 0; i < bisections; ++i) {
-    const double middle = 0.5 * (least + most);
-    (isInGamut(withChroma(middle)) ? least : most) = middle;
+    const double middle = 0.5 * (low + high);
+    (isInGamut(withChroma(middle)) ? low : high) = middle;
   }
-  return withChroma(least).max(0.0).min(maxReflectance);
+  return withChroma(low).max(0.0).min(maxReflectance);
 }
 
 /// Decrease of L* of the context at the edge: where it faces the light, and in a groove that the
@@ -40,9 +40,9 @@ constexpr std::array contextShading = {-3.0, 4.0};
 
 /// Linear color of a medium at the edge, as it appears in an image. Shadows and specular
 /// reflections leave less than half of the lightness differences.
-Rgb toImageColor(const Rgb& seen, double shade) {
+Rgb toImageColor(const Rgb& reflectance, double shade) {
   constexpr double darkest = 29.0, lightness = 0.43, saturation = 0.62;
-  const Lab lab = toLab(seen);
+  const Lab lab = toLab(reflectance);
   const double L = darkest + lightness * lab.L, chroma = saturation * L / std::max(lab.L, 1.0);
   return toLinear({L - shade, chroma * lab.a, chroma * lab.b}).max(0.0).min(1.0);
 }
@@ -53,8 +53,8 @@ const ColorFunction& albedoOf(const std::optional<ColorFunction>& own,
   return own ? *own : transfer.albedo;
 }
 
-/// Saturation of the context at the start, limits of the adjustment, and the color difference
-/// (CIELAB) whose cost equals a score of 1.
+/// Saturation of the context at the start, limits of the adjustment, and the CIELAB color
+/// difference whose cost equals a score of 1.
 struct Limits {
   double saturationStart;
   double saturation, lightness, shift, chroma, accent;
@@ -69,9 +69,9 @@ constexpr Limits gentle{0.6, 0.5, 0.35, 12.0, 1.4, 0.35, 300.0},
 class AdjustmentSearch {
 public:
   AdjustmentSearch(const std::vector<InterfaceColors>& colors, const ColorAdjustment& start,
-                   double worth, double saturation, double g)
+                   double changeScale, double saturation, double g)
       : m_colors(&colors),
-        m_changeScale(worth),
+        m_changeScale(changeScale),
         m_saturation(saturation),
         m_g(g),
         m_start(start),
@@ -81,68 +81,69 @@ public:
   const ColorAdjustment& adjustment() const { return m_adjustment; }
   double score() const { return m_score; }
 
-  /// Increases a member in steps, from its current value to at most `farthest`.
-  void increase(double ColorAdjustment::*knob, double farthest) {
-    const double first = m_adjustment.*knob;
+  /// Increases a member in steps, from its current value to at most `limit`.
+  void increase(double ColorAdjustment::*member, double limit) {
+    const double first = m_adjustment.*member;
     for (int i = 1; i <= steps && m_score < sufficientScore; ++i)
-      tryValue(knob, first + (farthest - first) * i / steps,
-               [this](double fraction) { return fraction > m_score; });
+      tryValue(member, first + (limit - first) * i / steps,
+               [this](double score) { return score > m_score; });
   }
 
-  /// Moves all members back toward the start, last to first, without losing a needed score. Repeats
-  /// this, since one relaxed member may allow another to relax further.
+  /// Moves all members back toward the start, last to first, as long as the score stays sufficient.
+  /// Repeats this, since one relaxed member may allow another to relax further.
   void relax() {
     ColorAdjustment before;
     do {
       before = m_adjustment;
-      for (const auto knob : {&ColorAdjustment::focusAccent, &ColorAdjustment::focusChroma,
-                              &ColorAdjustment::focusLightness, &ColorAdjustment::contextLightness,
-                              &ColorAdjustment::contextSaturation})
-        relax(knob);
+      for (const auto member :
+           {&ColorAdjustment::focusAccent, &ColorAdjustment::focusChroma,
+            &ColorAdjustment::focusLightness, &ColorAdjustment::contextLightness,
+            &ColorAdjustment::contextSaturation})
+        relax(member);
     } while (!(m_adjustment == before));
   }
 
-  /// Blends the focus with the accent color of the best worth, if one improves it. Only accents of
+  /// Blends the focus with the best accent color, if one improves the net score. Only accents of
   /// similar lightness are tried: a pale organ in dark red would look like muscle.
-  void addAccent(double farthest) {
-    constexpr double mostApart = 40.0;
+  void addAccent(double limit) {
+    constexpr double maxDifference = 40.0;
     const double own = mean([](const InterfaceColors& part) { return toLab(part.focus).L; });
     AdjustmentSearch best = *this;
     for (std::size_t i = 0; i < accentColors.size() && m_score < sufficientScore; ++i) {
-      if (std::abs(toLab(decodeSrgb(hexToRgb(accentColors[i].color))).L - own) > mostApart)
+      if (std::abs(toLab(decodeSrgb(hexToRgb(accentColors[i].color))).L - own) > maxDifference)
         continue;
-      AdjustmentSearch turned = *this;
-      turned.m_adjustment.accent = i;
-      turned.increase(&ColorAdjustment::focusAccent, farthest);
-      if (turned.isBetterThan(best))
-        best = turned;
+      AdjustmentSearch candidate = *this;
+      candidate.m_adjustment.accent = i;
+      candidate.increase(&ColorAdjustment::focusAccent, limit);
+      if (candidate.isBetterThan(best))
+        best = candidate;
     }
     m_adjustment = best.m_adjustment;
     m_score = best.m_score;
   }
 
   /// True if its score, less the cost of its color change, is higher.
-  bool isBetterThan(const AdjustmentSearch& other) const { return worth() > other.worth(); }
+  bool isBetterThan(const AdjustmentSearch& other) const { return netScore() > other.netScore(); }
 
 private:
   static constexpr int steps = 20;
 
-  void relax(double ColorAdjustment::*knob) {
-    const double last = m_adjustment.*knob, needed = std::min(m_score, sufficientScore);
+  void relax(double ColorAdjustment::*member) {
+    const double last = m_adjustment.*member, needed = std::min(m_score, sufficientScore);
     for (int i = 1; i <= steps; ++i)
-      if (!tryValue(knob, last + (m_start.*knob - last) * i / steps,
-                    [needed](double fraction) { return fraction >= needed; }))
+      if (!tryValue(member, last + (m_start.*member - last) * i / steps,
+                    [needed](double score) { return score >= needed; }))
         return;
   }
 
-  bool tryValue(double ColorAdjustment::*knob, double value, const auto& isWanted) {
-    ColorAdjustment turned = m_adjustment;
-    turned.*knob = value;
-    const double share = computeScore(turned);
-    if (!isWanted(share))
+  bool tryValue(double ColorAdjustment::*member, double value, const auto& accept) {
+    ColorAdjustment candidate = m_adjustment;
+    candidate.*member = value;
+    const double score = computeScore(candidate);
+    if (!accept(score))
       return false;
-    m_adjustment = turned;
-    m_score = share;
+    m_adjustment = candidate;
+    m_score = score;
     return true;
   }
 
@@ -155,12 +156,12 @@ private:
     }
     return sum / area;
   }
-  double computeScore(const ColorAdjustment& knobs) const {
+  double computeScore(const ColorAdjustment& adjustment) const {
     return mean([&](const InterfaceColors& part) {
-      return contrastScore(measureAdjustedContrast(knobs, part, m_saturation, m_g));
+      return contrastScore(measureAdjustedContrast(adjustment, part, m_saturation, m_g));
     });
   }
-  double worth() const { return std::min(m_score, sufficientScore) - change() / m_changeScale; }
+  double netScore() const { return std::min(m_score, sufficientScore) - change() / m_changeScale; }
   /// Mean color difference from the original colors, summed over both sides.
   double change() const {
     return mean([&](const InterfaceColors& part) {
@@ -177,25 +178,25 @@ private:
 
 /// Parts with a significant fraction of the interface.
 std::vector<ComponentInterface> selectMajor(std::vector<ComponentInterface> interfaces) {
-  constexpr double enough = 0.05;
+  constexpr double minFraction = 0.05;
   double area = 0.0;
   for (const ComponentInterface& part : interfaces)
     area += part.area;
-  std::erase_if(interfaces, [&](const ComponentInterface& b) { return b.area < enough * area; });
+  std::erase_if(interfaces, [&](const auto& part) { return part.area < minFraction * area; });
   return interfaces;
 }
 
 } // namespace
 
-Rgb adjustContext(const Rgb& seen, const ColorAdjustment& adjustment) {
-  const Lab lab = toLab(seen);
+Rgb adjustContext(const Rgb& reflectance, const ColorAdjustment& adjustment) {
+  const Lab lab = toLab(reflectance);
   return reduceToGamut({lab.L + adjustment.contextLightness * (adjustment.contextGoal - lab.L),
                         adjustment.contextSaturation * lab.a,
                         adjustment.contextSaturation * lab.b});
 }
 
-Rgb adjustFocus(const Rgb& seen, const ColorAdjustment& adjustment) {
-  const Lab lab = toLab(seen),
+Rgb adjustFocus(const Rgb& reflectance, const ColorAdjustment& adjustment) {
+  const Lab lab = toLab(reflectance),
             accent = toLab(decodeSrgb(hexToRgb(accentColors[adjustment.accent].color)));
   const auto mix = [&](double own, double other) {
     return own + adjustment.focusAccent * (other - own);
@@ -272,14 +273,14 @@ TintContrast adjustContrast(const std::vector<ComponentInterface>& interfaces, c
                             const Tint& tint, const MaterialTable& table,
                             const TransferFunction& transfer, double saturation) {
   const double g = transfer.g;
-  const auto seen = [&](std::uint8_t component, double scalar) {
+  const auto reflected = [&](std::uint8_t component, double scalar) {
     return toReflectance(Rgb(albedoOf(tint.albedo[component], transfer)(scalar)), g);
   };
   const std::vector<ComponentInterface> parts = selectMajor(interfaces);
   std::vector<InterfaceColors> colors;
   for (const ComponentInterface& part : parts)
-    colors.push_back(
-        {seen(part.focus, part.focusScalar), seen(part.context, part.contextScalar), part.area});
+    colors.push_back({reflected(part.focus, part.focusScalar),
+                      reflected(part.context, part.contextScalar), part.area});
   const bool isKnown = std::ranges::any_of(
       parts, [&](const ComponentInterface& part) { return tint.albedo[part.focus].has_value(); });
   const Adjustable adjustable = !table.hasContrast ? Adjustable::nothing

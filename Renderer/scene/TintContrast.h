@@ -17,7 +17,7 @@ struct ColorAdjustment {
   double contextSaturation = 1.0; ///< factor of the context's chroma
   double contextLightness = 0.0;  ///< blend weight toward the lightness `contextGoal`
   double contextGoal = 72.0;
-  double focusLightness = 0.0; ///< added to L*
+  double focusLightness = 0.0; ///< shift of L*
   double focusChroma = 1.0;    ///< factor
   double focusAccent = 0.0;    ///< blend weight toward the color `accent`
   std::size_t accent = 0;      ///< index in `accentColors`
@@ -34,10 +34,10 @@ inline constexpr std::array accentColors = {AccentColor{"yellow", 0xebbe3c},
                                             AccentColor{"ice", 0xbfe6f2},
                                             AccentColor{"dark red", 0x7c1e22}};
 
-/// Applies the adjustment to a linear reflected color. The result is at most as white as a medium
-/// can be; its chroma is reduced where it would leave the display gamut.
-Rgb adjustContext(const Rgb& seen, const ColorAdjustment& adjustment);
-Rgb adjustFocus(const Rgb& seen, const ColorAdjustment& adjustment);
+/// Applies the adjustment to a linear reflected color. The result is at most maxReflectance; its
+/// chroma is reduced where it would leave the display gamut.
+Rgb adjustContext(const Rgb& reflectance, const ColorAdjustment& adjustment);
+Rgb adjustFocus(const Rgb& reflectance, const ColorAdjustment& adjustment);
 
 /// Reflected colors on both sides of a part of the focus interface, linear.
 struct InterfaceColors {
@@ -67,12 +67,12 @@ enum class Adjustable { nothing, context, both };
 
 /// Finds the adjustment whose score, as the mean over the interface area, reaches sufficientScore.
 /// The members are increased in their order of declaration, each only as far as needed, or to its
-/// best score if its limit comes first. Then they are relaxed in reverse order as long as the score
-/// does not drop. The context starts at a saturation of 0.6, which also needs fewer collisions. If
-/// even nearlySufficient is out of reach, the search starts again at full saturation with wider
-/// limits. A darker focus in a lighter context and the reverse are both tried; the better score for
-/// its color change wins. `context`: members that it sets stay fixed. If the focus is not
-/// adjustable, the context may become gray. Without `colors`, nothing is adjusted.
+/// best score within its limit. Then they are relaxed in reverse order as long as the score does
+/// not drop. The context starts at a saturation of 0.6, which also needs fewer collisions. If the
+/// score stays below nearlySufficient, the search starts again at full saturation with wider
+/// limits. A darker focus in a lighter context and the reverse are both tried; the higher score,
+/// less the cost of the color change, wins. `context`: members that it sets stay fixed. If the
+/// focus is not adjustable, the context may become gray. Without `colors`, nothing is adjusted.
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable,
                                  double saturation, double g);

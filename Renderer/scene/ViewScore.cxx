@@ -120,10 +120,10 @@ private:
 ViewScorer::ViewScorer(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
                        const Mask& focus)
     : m_domain(domain), m_focus(focus) {
-  constexpr double cellsAlong = 32.0;
+  constexpr double cellsPerEdge = 32.0;
   const Grid& grid = volume.grid;
   const Vec3 edges = grid.spacing().cwiseProduct(grid.size.cast<double>());
-  m_cellEdge = edges.maxCoeff() / cellsAlong;
+  m_cellEdge = edges.maxCoeff() / cellsPerEdge;
   const Size3 count =
       (edges / m_cellEdge).array().round().max(1.0).cast<std::int64_t>().min(grid.size.array());
   std::vector<std::vector<ContextCell>> layers(static_cast<std::size_t>(count.z()));

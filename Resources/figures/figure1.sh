@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Reproduces figure 1 of the paper: a knee without a clip, with plane, cut-away and clipping surface, the
-# control points of that surface, and the bones of a foot. Uses phantoms, and real data if present. Writes
-# section "figure1" of README.md. usage: bash Resources/figures/figure1.sh
+# Reproduces figure 1 of the paper: a knee without a clip, and with plane, cut-away and clipping surface; the control
+# points of that surface; and the bones of a foot. Uses phantoms, and real data if present. Writes section "figure1" of
+# README.md. usage: bash Resources/figures/figure1.sh
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 page=$out/figure1.md
 
@@ -21,8 +21,8 @@ draw_outline() {
     -fill '#10e040' -stroke '#104018' -strokewidth 0.6 "${dots[@]}" "$out/$name.png"
 }
 
-phantom knee
-phantom foot
+make_phantom knee
+make_phantom foot
 knee=("$out/knee/knee.nrrd" --segmentation "$out/knee/knee.seg.nrrd" --materials none --focus "Femoral cartilage"
   --labelsmoothing 0.6 --transfer mr-knee --position=-15,200,-90)
 foot=("$out/foot/foot.mrml" --materials none --focus bones --labelsmoothing 0.6 --transfer ct-skeleton --view superior)
@@ -32,11 +32,11 @@ render knee-cutaway "${knee[@]}" --clip cutaway --soft 2
 render knee-spline "${knee[@]}" --clip surface --soft 2
 draw_outline knee-points knee-spline "${knee[@]}"
 render foot-spline "${foot[@]}" --clip surface
-row figure1.jpg knee-none "a  Whole" knee-hand-plane "b  Plane, by hand" knee-cutaway "c  Cut-away" \
+join_images figure1.jpg knee-none "a  Whole" knee-hand-plane "b  Plane, by hand" knee-cutaway "c  Cut-away" \
   knee-spline "d  Clipping surface" knee-points "e  Outline, control points" foot-spline "f  Foot"
 
-first_pass_ms() { number "$1" '(.seconds.focus + .seconds.spline + .seconds.fill) * 1000' %.0f; }
-first_pass_percent() { number "$1" '100 * (.seconds.focus + .seconds.spline + .seconds.fill) / (.seconds.transport * 100 / '"$samples"')' "$2"; }
+first_pass_ms() { get "$1" '(.seconds.focus + .seconds.spline + .seconds.fill) * 1000' %.0f; }
+first_pass_percent() { get "$1" '100 * (.seconds.focus + .seconds.spline + .seconds.fill) / (.seconds.transport * 100 / '"$samples"')' "$2"; }
 {
   cat <<'END'
 ## Figure 1 of the paper
@@ -50,8 +50,8 @@ foot is a synthetic CT with the bones as the focus.
 |---|---|---|---|---|---|
 END
   while read -r panel name; do
-    echo "| $panel | $(number "$name" .focusKept %.3f) | $(number "$name" .focusCoverage %.3f)" \
-      "| $(number "$name" .focusLight) | $(number "$name" .boundaryGapMm.mean) | $(number "$name" .contextRemoved) |"
+    echo "| $panel | $(get "$name" .focusKept %.3f) | $(get "$name" .focusCoverage %.3f)" \
+      "| $(get "$name" .focusLight) | $(get "$name" .boundaryGapMm.mean) | $(get "$name" .contextRemoved) |"
   done <<'END'
 a knee-none
 b knee-hand-plane
@@ -69,7 +69,7 @@ if [ -d "$torso" ]; then
   render torso-cutaway "${bones[@]}" --clip cutaway
   render torso-spline "${bones[@]}" --clip surface
   render torso-exact "${bones[@]}" --boundary exact
-  row figure1-real.jpg torso-none "Whole" torso-cutaway "Cut-away" torso-spline "Surface, spline" \
+  join_images figure1-real.jpg torso-none "Whole" torso-cutaway "Cut-away" torso-spline "Surface, spline" \
     torso-exact "Surface, exact"
   cat >>"$page" <<'END'
 
@@ -85,18 +85,18 @@ cat >>"$page" <<END
 
 ### The paper's statements and our findings
 
-- **A plane covers the cartilage badly, a cut-away leaves cliffs and shadows, the surface shows all of it, and lit**: the table
-  confirms it.
-- **"C0, C1, C2 continuity"**: f is not C2 at a control point, where r² ln r² has a logarithmic second derivative. Across the
-  outline of the focus the surface is not even C0: between control points it misses the depth of the focus by the gap
-  above, and its slope does not match. \`--boundary exact\` matches both, up to a limit of slope.
+- **A plane covers the cartilage badly, a cut-away leaves depth steps and shadows, the surface shows all of the cartilage
+  and lights it well**: confirmed by the table.
+- **"C0, C1, C2 continuity"**: the spline is not C2 at a control point, where r² ln r² has a logarithmic second derivative.
+  Across the outline of the focus the surface is not even C0: between control points it misses the depth of the focus by
+  the gap above, and its slope does not match. \`--boundary exact\` matches both, up to a limit of slope.
 - **N = 50 control points**: enough for a smooth, single outline. A gap between them remains, since p = 0.5 also smooths; see
   the table below.
 - **p = 0.5** means nothing without a unit of length, which the paper does not state. Ours is mm, so the same shape at 1 mm
   and at 512 mm is smoothed differently ([figure 3](#figure-3-of-the-paper)).
-- **First pass in 0.1 s** at 512 × 512 (dual-core i7 with a Quadro K2200): here $(first_pass_ms knee-spline) ms at
-  $size × $size on $(nproc) cores, without a GPU.
-- **First pass as one iteration of 100**: here $(first_pass_percent knee-spline %.2f) % of an image with 100 samples per pixel.
+- **The first pass, which computes the surface, takes 0.1 s** at 512 × 512 (dual-core i7 with a Quadro K2200): here
+  $(first_pass_ms knee-spline) ms at $size × $size on $(nproc) cores, without a GPU.
+- **The first pass costs about one of 100 iterations**: here $(first_pass_percent knee-spline %.2f) % of an image with 100 samples per pixel.
 END
 
 {
@@ -105,7 +105,7 @@ END
     printf '| %s |' "$n"
     for p in 0.5 0.9 0.99 1; do
       size=192 samples=1 render "gap-$n-$p" "${knee[@]}" --controlpoints "$n" --smoothing "$p" >/dev/null
-      printf ' %s |' "$(number "gap-$n-$p" .boundaryGapMm.mean)"
+      printf ' %s |' "$(get "gap-$n-$p" .boundaryGapMm.mean)"
     done
     echo
   done

@@ -4,9 +4,9 @@
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 page=$out/figure3.md
 
-# plot NAME MM: plots the clipping surface $out/NAME.ply from the camera and turned by 90 degrees about the
+# plot_surface NAME MM: plots the clipping surface $out/NAME.ply from the camera and turned by 90 degrees about the
 # vertical axis of the image, colored by depth.
-plot() {
+plot_surface() {
   local name=$1 mm=$2 header count
   header=$(($(grep -abo -m1 end_header "$out/$name.ply" | cut -d: -f1) + 11))
   count=$(grep -a -m1 'element vertex' "$out/$name.ply" | cut -d' ' -f3)
@@ -55,11 +55,11 @@ cat >"$page" <<'END'
 ## Figure 3 of the paper
 
 Written by `figure3.sh`: a cube of 512³ voxels whose scalar is the z index, from -255 (blue) to 255 (red). The focus is a
-cuboid of 255 × 255 × 391 voxels in its center. The paper's "unit cube" has an edge of 1
-without a unit, but smoothing with p = 0.5 depends on the unit. Here are two edges.
+cuboid of 255 × 255 × 391 voxels in its center. The paper's "unit cube" has an edge of 1 without a unit, but smoothing with
+p = 0.5 depends on the unit. So the figure has two versions, with edges of 1 mm and 512 mm.
 END
 for mm in 1 512; do
-  phantom cube "cube-$mm" --edge "$mm"
+  make_phantom cube "cube-$mm" --edge "$mm"
   cube=("$out/cube-$mm/cube.mrml" --focus Focus --contextsaturation 1)
   render "cube$mm-plane" "${cube[@]}" --clip plane
   render "cube$mm-cutaway" "${cube[@]}" --clip cutaway
@@ -68,9 +68,9 @@ for mm in 1 512; do
   for boundary in spline exact; do
     "$fenestra" "${cube[@]}" --boundary "$boundary" --size 256x256 --samples 1 --progress none \
       --surface "$out/cube$mm-$boundary.ply" --output "$out/surface.png" >/dev/null
-    plot "cube$mm-$boundary" "$mm"
+    plot_surface "cube$mm-$boundary" "$mm"
   done
-  row "figure3-$mm.jpg" "cube$mm-plane" "a  Cut plane" "cube$mm-cutaway" "b  Cut-away" \
+  join_images "figure3-$mm.jpg" "cube$mm-plane" "a  Cut plane" "cube$mm-cutaway" "b  Cut-away" \
     "cube$mm-spline" "c  Clipping surface, spline" "cube$mm-exact" "c  Clipping surface, exact"
   for boundary in spline exact; do
     convert "$out/cube$mm-$boundary-plot.png" -quality 88 "$figures/figure3-$mm-$boundary.jpg"
@@ -81,9 +81,9 @@ for mm in 1 512; do
     echo "| clip | gap mm: mean | p95 | max | slope jump | focus kept | focus shown | light on the focus |"
     echo "|---|---|---|---|---|---|---|---|"
     for name in plane cutaway spline exact; do
-      echo "| $name | $(number "cube$mm-$name" .boundaryGapMm.mean %.4f) | $(number "cube$mm-$name" .boundaryGapMm.p95 %.4f)" \
-        "| $(number "cube$mm-$name" .boundaryGapMm.max %.4f) | $(number "cube$mm-$name" .boundarySlopeJump.mean)" \
-        "| $(number "cube$mm-$name" .focusKept %.3f) | $(number "cube$mm-$name" .focusCoverage %.3f) | $(number "cube$mm-$name" .focusLight) |"
+      echo "| $name | $(get "cube$mm-$name" .boundaryGapMm.mean %.4f) | $(get "cube$mm-$name" .boundaryGapMm.p95 %.4f)" \
+        "| $(get "cube$mm-$name" .boundaryGapMm.max %.4f) | $(get "cube$mm-$name" .boundarySlopeJump.mean)" \
+        "| $(get "cube$mm-$name" .focusKept %.3f) | $(get "cube$mm-$name" .focusCoverage %.3f) | $(get "cube$mm-$name" .focusLight) |"
     done
   } >>"$page"
 done
@@ -93,7 +93,7 @@ cat >>"$page" <<'END'
   the focus, and the thin plate spline rounds the corners of the outline.
 - At 1 mm, λ = (1 − p) / p = 1 is huge compared to the shape: the spline is close to the least-squares plane and misses the
   outline by a noticeable fraction of the cube. At 512 mm it almost interpolates.
-- "The continuity of the surface with the object boundary" in the paper's figure is that of a suitable size. `--boundary
-  exact` has it at any size.
+- "The continuity of the surface with the object boundary" in the paper's figure holds at a suitable size only. With
+  `--boundary exact` it holds at any size.
 END
 write_section figure3

@@ -15,8 +15,8 @@ size=${SIZE:-384}
 samples=${SAMPLES:-96}
 mkdir -p "$out"
 
-# phantom KIND [FOLDER [options]]: writes a phantom unless it exists.
-phantom() {
+# make_phantom KIND [FOLDER [options]]: writes a phantom unless it exists.
+make_phantom() {
   local kind=$1 folder=$out/${2:-$1}
   [ -s "$folder/$kind.nrrd" ] || "$fenestra" phantom "$kind" --output "$folder" "${@:3}" >/dev/null
 }
@@ -35,15 +35,15 @@ render() {
   fi
 }
 
-# number NAME KEY [FORMAT]: prints a value of the stats of NAME; a dash if it is null or missing.
-number() {
+# get NAME KEY [FORMAT]: prints a value of the stats of NAME; a dash if it is null or missing.
+get() {
   local value
   value=$(jq -r "$2 // empty" "$out/$1.json")
   [ -n "$value" ] && printf "${3:-%.2f}" "$value" || printf -- '-'
 }
 
-# row FILE.jpg NAME CAPTION ...: puts images side by side.
-row() {
+# join_images FILE.jpg NAME CAPTION ...: puts images side by side.
+join_images() {
   local file=$1 labels=()
   shift
   while [ $# -gt 0 ]; do

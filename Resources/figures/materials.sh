@@ -17,8 +17,8 @@ torso="$data/torso_ct_ccth_a01/ct.nii.gz --segmentation $data/torso_ct_ccth_a01/
 cat >"$page" <<'END'
 ## Segment colors
 
-Written by `materials.sh` with `--materials auto`: the library's [colors](../materials/README.md), changed no more than the
-focus needs to be distinguishable from its surroundings. Right: a simulation of deuteranopia (Machado, Oliveira, Fernandes
+Written by `materials.sh` with `--materials auto`: the library's [colors](../materials/README.md), adjusted just enough that
+the focus is distinguishable from its surroundings. Right: a simulation of deuteranopia (Machado, Oliveira, Fernandes
 2009). The contrasts are [measured](../../Testing/Benchmarks/README.md) in CIELAB at 512 × 512 across the edge of the focus: ΔE
 for normal, protan and deutan vision, and ΔL*. The targets are 20, 12, 12 and 8.
 END

@@ -5,7 +5,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 page=$out/modes.md
 size=${SIZE:-320}
 
-phantom knee
+make_phantom knee
 knee=("$out/knee/knee.nrrd" --materials none --segmentation "$out/knee/knee.seg.nrrd" --transfer mr-knee --position=-15,200,-90)
 cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6)
 
@@ -37,7 +37,7 @@ cartilage+=(--soft 2)
 show plane "--clip plane" "A plane: the one closest to the visible focus, or \`--plane OX,OY,OZ,NX,NY,NZ\`."
 show box "--clip hole --hole box" "A box-shaped hole with its floor at the farthest visible point of the focus, \`--holemargin\` mm wider than the focus."
 show cylinder "--clip hole" "A cylindrical hole."
-show sphere "--clip hole --hole sphere" "A hole like the imprint of a ball around the visible focus."
+show sphere "--clip hole --hole sphere" "A hole with a spherical floor around the visible focus."
 show cutaway "--clip cutaway" "Removes only what is in front of the focus."
 show ghost "--clip ghost --ghost 0.004" "Keeps a fraction of the extinction of what the surface would remove (default 0.1; use less for dense volumes)."
 show surface "--clip surface" "The paper's surface: a thin plate spline through \`--controlpoints\` points of the focus outline, smoothed by \`--smoothing\`."
@@ -45,10 +45,10 @@ show exact "--boundary exact" "A surface that continues the depth and slope of t
 show perspective "--boundary exact --projection perspective" "All modes also work in perspective."
 show nearer "--boundary exact --offset=-2" "The surface moved 2 mm toward the camera: a layer stays on the focus. Positive values move it into the focus."
 show margin "--boundary exact --margin 3" "The focus enlarged by 3 mm; negative values shrink it; with several segments, one margin per segment."
-show pale "--boundary exact --contextsaturation 0.15" "The context with little color."
+show pale "--boundary exact --contextsaturation 0.15" "The context with less color saturation."
 cartilage=(--focus "Femoral cartilage" --labelsmoothing 0.6)
 show soft "--boundary exact --soft 4" "The volume fades in over 4 mm behind the surface."
 show thin "--clip none --contextdensity 0.004 --contextsaturation 0.3" "Classic focus and context: no clip, but the extinction outside the focus is reduced to 0.4 %."
 cartilage=(--focus "Femoral cartilage")
-show labels "--labelsmoothing 0 --soft 0 --boundary exact" "Without \`--labelsmoothing\` and exactly on the border: the steps of the label map's 1 mm slices, and those of the scan."
+show labels "--labelsmoothing 0 --soft 0 --boundary exact" "Without smoothing, and exactly on the border: the 1 mm slices of label map and scan appear as steps."
 write_section modes

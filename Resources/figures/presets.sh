@@ -11,8 +11,8 @@ show() {
   convert "$out/$name.png" -quality 88 "$pictures/$name.jpg"
 }
 
-# real PRESET VOLUME SEGMENTS LABELS: renders an image of a volume in FENESTRA_DATA.
-real() {
+# show_real PRESET VOLUME SEGMENTS LABELS: renders an image of a volume in FENESTRA_DATA.
+show_real() {
   if [ -s "$data/$2" ]; then
     show "$1" "$data/$2" --segmentation "$data/$3" --focus "$4"
   else
@@ -20,21 +20,21 @@ real() {
   fi
 }
 
-# labels FILE PATTERN: prints the label values of the segments with matching names.
-labels() { [ ! -s "$data/$1" ] || jq -r --arg name "$2" '[.[] | select(.name | test($name)).label] | join(",")' "$data/$1"; }
+# find_labels FILE PATTERN: prints the label values of the segments with matching names.
+find_labels() { [ ! -s "$data/$1" ] || jq -r --arg name "$2" '[.[] | select(.name | test($name)).label] | join(",")' "$data/$1"; }
 
-phantom knee
+make_phantom knee
 show knee-cartilage "$out/knee/knee.nrrd" --segmentation "$out/knee/knee.seg.nrrd"
-phantom foot
+make_phantom foot
 show foot-bones "$out/foot/foot.nrrd" --segmentation "$out/foot/foot.seg.nrrd"
-phantom fetus
+make_phantom fetus
 show fetal-face "$out/fetus/fetus.nrrd" --segmentation "$out/fetus/fetus.seg.nrrd"
 torso=torso_ct_ccth_a01
-real liver $torso/ct.nii.gz $torso/seg_totalsegmentator_rtstruct.nii.gz "$(labels $torso/seg_labels.json liver)"
-real lungs $torso/ct.nii.gz $torso/seg_totalsegmentator_rtstruct.nii.gz "$(labels $torso/seg_labels.json lung)"
+show_real liver $torso/ct.nii.gz $torso/seg_totalsegmentator_rtstruct.nii.gz "$(find_labels $torso/seg_labels.json liver)"
+show_real lungs $torso/ct.nii.gz $torso/seg_totalsegmentator_rtstruct.nii.gz "$(find_labels $torso/seg_labels.json lung)"
 abdomen=abdomen_ct_totalseg
-real spine $abdomen/ct.nii.gz $abdomen/seg_multiorgan.nii.gz "$(labels $abdomen/seg_labels.json 'vertebra|sacrum')"
-real brain-surface head_mr_seg3d/t1.nii.gz head_mr_seg3d/seg_brain_skull.nii.gz 1
+show_real spine $abdomen/ct.nii.gz $abdomen/seg_multiorgan.nii.gz "$(find_labels $abdomen/seg_labels.json 'vertebra|sacrum')"
+show_real brain-surface head_mr_seg3d/t1.nii.gz head_mr_seg3d/seg_brain_skull.nii.gz 1
 
 # 64 colors keep each icon below 8 kB. The module's .qrc must list a new icon.
 for image in "$pictures"/preset-*.jpg; do

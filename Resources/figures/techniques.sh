@@ -9,8 +9,8 @@ titles=("Cut plane (placed by the focus)" "Virtual hole" "Cut-away" "Ghost, 0.00
   "Clipping surface, spline" "Clipping surface, exact")
 page=$out/techniques.md
 
-# subject NAME TITLE arguments...: renders each technique and adds the images and the table of metrics.
-subject() {
+# compare_techniques NAME TITLE arguments...: renders each technique and adds the images and the table of metrics.
+compare_techniques() {
   local name=$1 title=$2 images=()
   shift 2
   {
@@ -23,14 +23,14 @@ subject() {
     # shellcheck disable=SC2086
     render "$image" "$@" ${options[i]}
     images+=("$image" "${titles[i]}")
-    echo "| ${titles[i]} | $(number "$image" .boundaryGapMm.mean) | $(number "$image" .boundaryGapMm.p95)" \
-      "| $(number "$image" .boundaryGapMm.max) | $(number "$image" .boundarySlopeJump.mean)" \
-      "| $(number "$image" .focusKept %.3f) | $(number "$image" .focusCoverage %.3f)" \
-      "| $(number "$image" .focusLight %.2f) | $(number "$image" .contextRemoved %.2f) |" >>"$page"
+    echo "| ${titles[i]} | $(get "$image" .boundaryGapMm.mean) | $(get "$image" .boundaryGapMm.p95)" \
+      "| $(get "$image" .boundaryGapMm.max) | $(get "$image" .boundarySlopeJump.mean)" \
+      "| $(get "$image" .focusKept %.3f) | $(get "$image" .focusCoverage %.3f)" \
+      "| $(get "$image" .focusLight %.2f) | $(get "$image" .contextRemoved %.2f) |" >>"$page"
   done
   printf '\nWithout a clip, %s of the focus is shown. Its own depth jumps along %s of its outline.\n' \
-    "$(number "$image" .focusCoverageUnclipped %.3f)" "$(number "$image" .boundaryDepthJumps %.2f)" >>"$page"
-  row "techniques-$name.jpg" "${images[@]}"
+    "$(get "$image" .focusCoverageUnclipped %.3f)" "$(get "$image" .boundaryDepthJumps %.2f)" >>"$page"
+  join_images "techniques-$name.jpg" "${images[@]}"
 }
 
 cat >"$page" <<'END'
@@ -39,21 +39,21 @@ cat >"$page" <<'END'
 Written by `techniques.sh`: the same view, lights and samples for every technique.
 END
 
-phantom knee
-subject knee "Knee: femoral cartilage (synthetic MR)" "$out/knee/knee.nrrd" \
+make_phantom knee
+compare_techniques knee "Knee: femoral cartilage (synthetic MR)" "$out/knee/knee.nrrd" \
   --segmentation "$out/knee/knee.seg.nrrd" --materials none --focus "Femoral cartilage" --labelsmoothing 0.6 --soft 2 \
   --transfer mr-knee --position=-15,200,-90
-phantom foot
-subject foot "Foot: its bones (synthetic CT)" "$out/foot/foot.mrml" --materials none --focus bones --labelsmoothing 0.6 \
+make_phantom foot
+compare_techniques foot "Foot: its bones (synthetic CT)" "$out/foot/foot.mrml" --materials none --focus bones --labelsmoothing 0.6 \
   --transfer ct-skeleton --view superior
 liver=$data/torso_ct_ccth_a01
 if [ -d "$liver" ]; then
-  subject liver "Liver (CT of the collection CC-Tumor-Heterogeneity, TCIA, CC BY 4.0)" "$liver/ct.nii.gz" \
+  compare_techniques liver "Liver (CT of the collection CC-Tumor-Heterogeneity, TCIA, CC BY 4.0)" "$liver/ct.nii.gz" \
     --segmentation "$liver/seg_totalsegmentator_rtstruct.nii.gz" --materials none --focus 1 --labelsmoothing 2 \
     --transfer ct-liver --view anterior
 else
   printf '\n**Liver**: SKIPPED: FENESTRA_DATA has no torso_ct_ccth_a01.\n' >>"$page"
 fi
-phantom cube cube256 --size 256 --edge 512
-subject cube "Cube of 512 mm (the paper's model)" "$out/cube256/cube.mrml" --focus Focus --contextsaturation 1
+make_phantom cube cube256 --size 256 --edge 512
+compare_techniques cube "Cube of 512 mm (the paper's model)" "$out/cube256/cube.mrml" --focus Focus --contextsaturation 1
 write_section techniques

@@ -7,48 +7,48 @@ header_packages=(libeigen3-dev nlohmann-json3-dev)
 
 # find_packages: sets `package`.
 find_packages() {
-  local file library who names=()
+  local file library owner_name names=()
   local -A owner
   for file in "${origin[@]}"; do # dpkg knows files by the path in their package
     names+=("$file" "/usr$file" "$(realpath "$file")" "/usr$(realpath "$file")")
   done
-  while read -r who file; do
-    owner[$file]=${who%%:*}
+  while read -r owner_name file; do
+    owner[$file]=${owner_name%%:*}
   done < <(dpkg-query -S "${names[@]}" 2>/dev/null)
   declare -gA package
   for library in "${!origin[@]}"; do
     for file in "${origin[$library]}" "$(realpath "${origin[$library]}")"; do
-      who=${owner[$file]:-${owner[/usr$file]:-}}
-      [ -z "$who" ] || package[$library]=$who
+      owner_name=${owner[$file]:-${owner[/usr$file]:-}}
+      [ -z "$owner_name" ] || package[$library]=$owner_name
     done
     [ -v "package[$library]" ] || die "$library: belongs to no Debian package, so its license is unknown"
   done
 }
 
-# packages: prints the Debian packages that contribute to the archive, by name.
-packages() { printf '%s\n' "${package[@]}" "${header_packages[@]}" | sort -u; }
+# list_packages: prints the Debian packages that contribute to the archive, by name.
+list_packages() { printf '%s\n' "${package[@]}" "${header_packages[@]}" | sort -u; }
 
-# license PACKAGE: prints its SPDX expression from licenses.txt.
-license() {
+# find_license PACKAGE: prints its SPDX expression from licenses.txt.
+find_license() {
   sed -n "s/^${1//./[.]} \{1,\}//p" "$parts/licenses.txt" | grep . ||
     die "$1: has no known license; read /usr/share/doc/$1/copyright and add a line to Resources/release/licenses.txt"
 }
 
 # write_notices: writes the copyright file of each package, and the license texts that these reference.
 write_notices() {
-  local one text
-  while read -r one; do
-    license "$one" >/dev/null
-    cp -L "/usr/share/doc/$one/copyright" "$root/licenses/$one.txt" || die "$one: has no copyright file"
-  done < <(packages)
+  local item text
+  while read -r item; do
+    find_license "$item" >/dev/null
+    cp -L "/usr/share/doc/$item/copyright" "$root/licenses/$item.txt" || die "$item: has no copyright file"
+  done < <(list_packages)
   cat "$root"/licenses/*.txt | grep -oE '/usr/share/common-licenses/[A-Za-z]+(-[0-9]+(\.[0-9]+)*)?' | sort -u |
     while read -r text; do
       [ ! -e "$text" ] || cp -L "$text" "$root/licenses/common"
     done
 }
 
-# list ITEM...: prints a JSON array.
-list() {
+# print_array ITEM...: prints a JSON array.
+print_array() {
   local IFS=,
   printf '[%s]' "$*"
 }
@@ -72,7 +72,7 @@ print_url() {
 # print_file ID FILE: prints a file of the bill.
 print_file() {
   local library=${2##*/} expression=Apache-2.0
-  [ ! -v "package[$library]" ] || expression=$(license "${package[$library]}")
+  [ ! -v "package[$library]" ] || expression=$(find_license "${package[$library]}")
   printf '\n{"SPDXID":"SPDXRef-%s","fileName":"./%s","licenseConcluded":"%s",' "$1" "${2#"$root"/}" "$expression"
   printf '"copyrightText":"NOASSERTION","checksums":[{"algorithm":"SHA1","checksumValue":"%s"},' \
     "$(sha1sum <"$2" | cut -c1-40)"
@@ -86,23 +86,23 @@ print_relation() {
 
 # write_bill: prints the bill of materials (SPDX 2.3, JSON) with the Debian packages and the libraries.
 write_bill() {
-  local one id source built place file library bill=() files=() relations=()
+  local item id source built place file library bill=() files=() relations=()
   bill+=("$(print_package fenestra fenestra "$version" Apache-2.0 NOASSERTION)")
   relations+=("$(print_relation DOCUMENT DESCRIBES fenestra)")
-  while read -r one; do
-    id=${one//[^A-Za-z0-9.-]/-}
-    read -r source built < <(dpkg-query -W -f='${source:Package} ${source:Version}\n' "$one" | sed -n 1p)
+  while read -r item; do
+    id=${item//[^A-Za-z0-9.-]/-}
+    read -r source built < <(dpkg-query -W -f='${source:Package} ${source:Version}\n' "$item" | sed -n 1p)
     place=https://snapshot.debian.org/package/$source/$built/
-    bill+=("$(print_package "$id" "$one" "$built" "$(license "$one")" "$place" "$(print_url "$one")")")
+    bill+=("$(print_package "$id" "$item" "$built" "$(find_license "$item")" "$place" "$(print_url "$item")")")
     relations+=("$(print_relation fenestra CONTAINS "$id")")
-  done < <(packages)
+  done < <(list_packages)
   for file in "$root"/lib/* "$root/libexec/fenestra"; do
     library=${file##*/}
     id=File-${library//[^A-Za-z0-9.-]/-}
     files+=("$(print_file "$id" "$file")")
-    one=fenestra
-    [ ! -v "package[$library]" ] || one=${package[$library]//[^A-Za-z0-9.-]/-}
-    relations+=("$(print_relation "$id" GENERATED_FROM "$one")")
+    item=fenestra
+    [ ! -v "package[$library]" ] || item=${package[$library]//[^A-Za-z0-9.-]/-}
+    relations+=("$(print_relation "$id" GENERATED_FROM "$item")")
   done
   printf '{"spdxVersion":"SPDX-2.3","dataLicense":"CC0-1.0","SPDXID":"SPDXRef-DOCUMENT","name":"%s",' "$name"
   printf '"documentNamespace":"https://spdx.org/spdxdocs/%s-%s",' "$name" \
@@ -112,5 +112,5 @@ write_bill() {
   printf '"hasExtractedLicensingInfos":[{"licenseId":"LicenseRef-public-domain","name":"Public domain",'
   printf '"extractedText":"Its authors put it into the public domain: licenses/liblzma5.txt."}],\n'
   printf '"packages":%s,\n"files":%s,\n"relationships":%s}\n' \
-    "$(list "${bill[@]}")" "$(list "${files[@]}")" "$(list "${relations[@]}")"
+    "$(print_array "${bill[@]}")" "$(print_array "${files[@]}")" "$(print_array "${relations[@]}")"
 }

@@ -89,9 +89,9 @@ Node* vtkSlicerFenestraLogic::AddRender(Node* settings, bool turntable) {
   for (const std::string& attribute : settings->GetAttributeNames())
     render->SetAttribute(attribute.c_str(), settings->GetAttribute(attribute.c_str()));
   std::map<std::string, std::string> flags = this->GetFlags(settings);
-  for (const std::string& own : Node::GetTurntableFlagNames())
+  for (const std::string& name : Node::GetTurntableFlagNames())
     if (!turntable)
-      flags.erase(own);
+      flags.erase(name);
   render->SetFlags(flags);
   return render;
 }
@@ -248,10 +248,10 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
     arguments.push_back("--surface=surface.vtp");
   const std::map<std::string, std::string> flags = render->GetFlags();
   const auto denoise = flags.find("denoise");
-  const bool isFiltered = denoise == flags.end() || denoise->second != "off";
-  if (isFiltered && flags.count("noise") > 0 && flags.count("noisetarget") == 0)
+  const bool isDenoised = denoise == flags.end() || denoise->second != "off";
+  if (isDenoised && flags.count("noise") > 0 && flags.count("noisetarget") == 0)
     arguments.push_back("--noisetarget=filtered"); // noise of the displayed image
-  const std::vector<std::string> own = SlicerExport::toArguments(flags);
-  arguments.insert(arguments.end(), own.begin(), own.end());
+  const std::vector<std::string> values = SlicerExport::toArguments(flags);
+  arguments.insert(arguments.end(), values.begin(), values.end());
   return arguments;
 }

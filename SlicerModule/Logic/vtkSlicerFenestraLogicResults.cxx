@@ -275,7 +275,7 @@ vtkSlicerFenestraLogic::MoveOutsideVolume(Node* render, const SlicerExport::Matr
   return moved;
 }
 
-/// Adds frames as a volume of 1 mm pixels, away from the anatomy, to which they have no position.
+/// Adds frames as a volume of 1 mm pixels beside the anatomy, since they have no position in it.
 void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
   if (auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole)))
     return picture->SetAndObserveImageData(frames);

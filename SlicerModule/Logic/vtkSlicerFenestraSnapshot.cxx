@@ -138,7 +138,7 @@ struct ScopedFile {
   std::filesystem::path path;
 };
 
-/// Property of the last snapshot: most snapshots differ in the camera alone.
+/// Property of the last snapshot. Most snapshots differ only in the camera.
 struct CachedProperty {
   vtkWeakPointer<vtkMRMLVolumePropertyNode> node;
   vtkMTimeType time = 0;
@@ -149,12 +149,12 @@ struct CachedProperty {
 /// of its version.
 void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::path& folder,
                   SlicerExport::Contents& contents) {
-  static CachedProperty taken; // used in the main thread only
+  static CachedProperty cache; // used in the main thread only
   const vtkMTimeType time =
       std::max(property->GetMTime(), property->GetVolumeProperty()->GetMTime());
-  if (taken.node == property && taken.time == time) {
-    contents.property = taken.text;
-    contents.propertyExtension = taken.extension;
+  if (cache.node == property && cache.time == time) {
+    contents.property = cache.text;
+    contents.propertyExtension = cache.extension;
     return;
   }
   vtkNew<vtkMRMLVolumePropertyNode> copy; // writing the original would mark it as saved
@@ -172,7 +172,7 @@ void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::pa
                     "Is the disk full?");
   contents.property = text.str();
   contents.propertyExtension = extension;
-  taken = {property, time, contents.property, extension};
+  cache = {property, time, contents.property, extension};
 }
 
 void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, SlicerExport::Contents& contents) {
@@ -310,7 +310,7 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
   using SlicerExport::Segment;
   const vtkSmartPointer<vtkSegmentation> segmentation = GetWithBinaryLabels(node);
   const std::string name = vtkSegmentationConverter::GetBinaryLabelmapRepresentationName();
-  SlicerExport::Segmentation& taken = contents.segmentation;
+  SlicerExport::Segmentation& result = contents.segmentation;
   std::ostringstream key;
   key << node->GetID();
   vtkOrientedImageData* first = nullptr;
@@ -320,14 +320,14 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
       continue;
     first = first ? first : labels;
     for (const std::string& id : segmentation->GetSegmentIDsForLayer(i, name)) {
-      taken.segments.push_back(ToSegment(id, segmentation->GetSegment(id), taken.layers.size()));
-      const Segment& last = taken.segments.back();
+      result.segments.push_back(ToSegment(id, segmentation->GetSegment(id), result.layers.size()));
+      const Segment& last = result.segments.back();
       key << '\n' << id << ' ' << last.label << ' ' << last.name << ' ' << last.tags;
       for (const double component : last.color)
         key << ' ' << component;
     }
-    taken.layers.push_back(ToLayer(labels, first));
-    key << '\n' << MakeKey(labels, "", taken.layers.back().labels);
+    result.layers.push_back(ToLayer(labels, first));
+    key << '\n' << MakeKey(labels, "", result.layers.back().labels);
   }
   for (const std::string& name : focus) { // scripts may pass names, the panel passes ids
     const std::string named = segmentation->GetSegmentIdBySegmentName(name);
@@ -336,7 +336,7 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
     vtkSegment* segment = segmentation->GetSegment(id);
     if (!segment)
       throw UserError("The segment \"" + name + "\" was removed. Choose another focus.");
-    if (std::none_of(taken.segments.begin(), taken.segments.end(), isEqual))
+    if (std::none_of(result.segments.begin(), result.segments.end(), isEqual))
       throw UserError("The segment \"" + std::string(segment->GetName()) +
                       "\" is empty. Paint it, or choose another focus.");
   }
@@ -344,5 +344,5 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
       segmentation == node->GetSegmentation()
           ? key.str()
           : node->GetID() + (" " + std::to_string(node->GetSegmentation()->GetMTime()));
-  taken.toWorld = GetWorldMatrix(node);
+  result.toWorld = GetWorldMatrix(node);
 }

@@ -49,11 +49,11 @@ const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetFlagNames() {
 
 const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetTurntableFlagNames() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> own;
+    std::vector<std::string> all;
     for (const SlicerExport::Flag& flag : SlicerExport::flags())
       if (flag.turntableOnly)
-        own.push_back(flag.name);
-    return own;
+        all.push_back(flag.name);
+    return all;
   }();
   return names;
 }
@@ -70,15 +70,15 @@ std::string vtkMRMLFenestraRenderNode::GetFlag(const std::string& name) const {
 }
 
 void vtkMRMLFenestraRenderNode::SetFlags(const std::map<std::string, std::string>& flags) {
-  std::map<std::string, std::string> kept, withheld = this->Withheld;
+  std::map<std::string, std::string> valid, withheld = this->Withheld;
   for (const std::string& name : GetFlagNames()) {
     const auto found = flags.find(name);
     if (found == flags.end() || found->second.empty())
       continue;
-    kept.insert(*found);
+    valid.insert(*found);
     withheld.erase(name);
   }
-  this->Assign(kept, withheld, this->Unknown);
+  this->Assign(valid, withheld, this->Unknown);
 }
 
 void vtkMRMLFenestraRenderNode::Assign(Values flags, Values withheld, Values unknown) {

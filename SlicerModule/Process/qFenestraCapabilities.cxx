@@ -6,8 +6,8 @@
 
 /// True if the flag's description has `word` as a separate word.
 bool qFenestraCapabilities::mentions(const QString& flag, const QString& word) const {
-  const QRegularExpression alone("(^|[\\s(,])" + QRegularExpression::escape(word) + "([\\s),.]|$)");
-  return alone.match(flags.value(flag).text).hasMatch();
+  const QRegularExpression regex("(^|[\\s(,])" + QRegularExpression::escape(word) + "([\\s),.]|$)");
+  return regex.match(flags.value(flag).text).hasMatch();
 }
 
 QMap<QString, qFenestraCapabilities::Flag>
@@ -46,16 +46,16 @@ void qFenestraCapabilityQuery::request(const QString& program) {
 }
 
 void qFenestraCapabilityQuery::onEnded(const qFenestraOutcome& outcome) {
-  const bool good = outcome.kind == qFenestraOutcome::Kind::done;
-  if (!m_flagsKnown && good) {
-    m_abilities.flags = qFenestraCapabilities::parseFlags(m_output);
+  const bool isDone = outcome.kind == qFenestraOutcome::Kind::done;
+  if (!m_flagsKnown && isDone) {
+    m_capabilities.flags = qFenestraCapabilities::parseFlags(m_output);
     m_flagsKnown = true;
     m_output.clear();
     m_child.run(m_program, {"turntable", "--help"}, QDir::tempPath());
     return;
   }
   // Old renderers take "turntable" for a file name and print the help of `fenestra render`.
-  if (m_flagsKnown && good && m_output.contains("--frames"))
-    m_abilities.turntable = m_output;
-  emit told(m_abilities);
+  if (m_flagsKnown && isDone && m_output.contains("--frames"))
+    m_capabilities.turntable = m_output;
+  emit told(m_capabilities);
 }

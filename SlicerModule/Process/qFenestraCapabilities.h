@@ -1,5 +1,5 @@
 #pragma once
-// Capabilities of the renderer, queried from the program: the panel offers nothing else.
+// Capabilities of the renderer, queried from the program. The panel offers only these.
 
 #include "qFenestraProgram.h"
 
@@ -32,13 +32,13 @@ public:
   void request(const QString& program);
 
 signals:
-  void told(const qFenestraCapabilities& abilities);
+  void told(const qFenestraCapabilities& capabilities);
 
 private:
   void onEnded(const qFenestraOutcome& outcome);
 
   QString m_program, m_output;
   qFenestraProgram m_child;
-  qFenestraCapabilities m_abilities;
+  qFenestraCapabilities m_capabilities;
   bool m_flagsKnown = false; ///< the query of the turntable runs
 };

@@ -26,16 +26,16 @@ bool copyFile(const qFenestraCopy& copy) {
 
 qFenestraCopies qFenestraCopies::picture(const QString& source, const QString& chosen,
                                          const QString& extension) {
-  const bool has = chosen.endsWith(extension, Qt::CaseInsensitive);
+  const bool hasExtension = chosen.endsWith(extension, Qt::CaseInsensitive);
   qFenestraCopies copies;
-  copies.m_all.append({source, has ? chosen : chosen + extension});
+  copies.m_all.append({source, hasExtension ? chosen : chosen + extension});
   return copies;
 }
 
 qFenestraCopies qFenestraCopies::frames(const QStringList& sources, const QString& chosen) {
   const QString extension = QStringLiteral(".png");
-  const bool has = chosen.endsWith(extension, Qt::CaseInsensitive);
-  const QString stem = has ? chosen.chopped(extension.size()) : chosen;
+  const bool hasExtension = chosen.endsWith(extension, Qt::CaseInsensitive);
+  const QString stem = hasExtension ? chosen.chopped(extension.size()) : chosen;
   qFenestraCopies copies;
   for (const QString& source : sources) {
     const QString number = QFileInfo(source).completeBaseName().section('_', -1);

@@ -55,18 +55,18 @@ void qFenestraMaterialsQuery::request(const QString& program,
     start({program, segments, folder});
 }
 
-void qFenestraMaterialsQuery::start(const Query& question) {
+void qFenestraMaterialsQuery::start(const Query& query) {
   constexpr const char* name = "names.seg.nrrd";
   m_output.clear();
   try {
-    SlicerExport::writeSegmentNames(question.segments,
-                                    std::filesystem::path(question.folder.toStdString()) / name);
+    SlicerExport::writeSegmentNames(query.segments,
+                                    std::filesystem::path(query.folder.toStdString()) / name);
   } catch (const SlicerExport::FileError&) { // a render reports the reason
     emit told({});
     return;
   }
   m_running = true;
-  m_child.run(question.program, {"inspect", name, "--json"}, question.folder);
+  m_child.run(query.program, {"inspect", name, "--json"}, query.folder);
 }
 
 void qFenestraMaterialsQuery::onEnded(const qFenestraOutcome& outcome) {
@@ -75,6 +75,6 @@ void qFenestraMaterialsQuery::onEnded(const qFenestraOutcome& outcome) {
     m_next.reset();
     return start(*next);
   }
-  const bool good = outcome.kind == qFenestraOutcome::Kind::done;
-  emit told(good ? qFenestraMaterials::parseReport(m_output) : qFenestraMaterials());
+  const bool isDone = outcome.kind == qFenestraOutcome::Kind::done;
+  emit told(isDone ? qFenestraMaterials::parseReport(m_output) : qFenestraMaterials());
 }

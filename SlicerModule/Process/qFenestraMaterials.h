@@ -45,7 +45,7 @@ private:
     std::vector<SlicerExport::Segment> segments;
     QString folder;
   };
-  void start(const Query& question);
+  void start(const Query& query);
   void onEnded(const qFenestraOutcome& outcome);
 
   qFenestraProgram m_child;

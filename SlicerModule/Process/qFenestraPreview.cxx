@@ -74,13 +74,13 @@ void qFenestraPreview::readEvent(const QString& line) {
     emit refused(reply["message"].toString());
   if (reply["event"] != "picture")
     return;
-  qFenestraPreviewImage picture;
+  qFenestraPreviewImage image;
   const QJsonArray files = reply["files"].toArray();
   for (const QJsonValue& file : files)
-    picture.files << file.toString();
-  picture.samples = reply["samples"].toInt();
-  picture.noise = reply["noiseFiltered"].toDouble(reply["noise"].toDouble(-1.0));
-  picture.seconds = reply["seconds"].toDouble();
-  picture.done = reply["done"].toBool();
-  emit refreshed(picture);
+    image.files << file.toString();
+  image.samples = reply["samples"].toInt();
+  image.noise = reply["noiseFiltered"].toDouble(reply["noise"].toDouble(-1.0));
+  image.seconds = reply["seconds"].toDouble();
+  image.done = reply["done"].toBool();
+  emit refreshed(image);
 }

@@ -46,7 +46,7 @@ public:
 
 signals:
   /// Image of the last change; images of earlier changes are dropped.
-  void refreshed(const qFenestraPreviewImage& picture);
+  void refreshed(const qFenestraPreviewImage& image);
   /// The renderer rejected the last change; the last image stays.
   void refused(const QString& message);
   void ended(const qFenestraOutcome& outcome);

@@ -25,8 +25,8 @@ public:
   /// Starts `program` in `folder`; `ended` is emitted even if the start fails.
   void run(const QString& program, const QStringList& arguments, const QString& folder);
 
-  /// Asks the child to end. It first writes its finished results, which has no time limit. A second
-  /// call kills the child.
+  /// Requests the end of the child, which first writes its finished results, without a time limit.
+  /// A second call kills the child.
   void stop();
 
   /// Removes the variables by which Slicer's launcher selects its own libraries and plugins.

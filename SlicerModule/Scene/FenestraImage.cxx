@@ -58,10 +58,10 @@ FileError makeError(const std::filesystem::path& file, const std::string& why) {
 /// Reads "(a,b,c)", LPS, into a column of a RAS matrix.
 void readPoint(const std::string& text, Matrix& matrix, std::size_t column) {
   std::istringstream in(text);
-  char mark = 0;
+  char separator = 0;
   for (std::size_t row = 0; row < 3; ++row) {
     double value = 0.0;
-    if (!(in >> mark >> value))
+    if (!(in >> separator >> value))
       throw std::invalid_argument("space origin and space directions need three numbers each");
     matrix[4 * row + column] = row < 2 && value != 0.0 ? -value : value;
   }

@@ -54,7 +54,7 @@ std::string toText(const MaterialChange& change) {
 
 std::map<std::string, std::string> filterMaterialFlags(const std::vector<Segment>& segments,
                                                        std::map<std::string, std::string> flags) {
-  const auto isThere = [&segments](const std::string& text) {
+  const auto isListed = [&segments](const std::string& text) {
     const std::string selector = parseMaterialChange(text).segment;
     return std::any_of(segments.begin(), segments.end(), [&selector](const Segment& one) {
       return one.id == selector || one.name == selector || std::to_string(one.label) == selector;
@@ -67,7 +67,7 @@ std::map<std::string, std::string> filterMaterialFlags(const std::vector<Segment
     return flags;
   std::vector<std::string> remaining;
   for (const std::string& text : splitList(changes->second))
-    if (isThere(text))
+    if (isListed(text))
       remaining.push_back(text);
   changes->second = joinList(remaining);
   if (remaining.empty())

@@ -44,8 +44,8 @@ constexpr const char* header =
     "shown elsewhere in percent";
 
 /// Prints the end of a row: the values that Worst and BoundaryMeasure have in common.
-template <typename Figures>
-void printFigures(const Figures& f) {
+template <typename Values>
+void printValues(const Values& f) {
   std::printf(",%.1f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.2f,%.2f,%.1f,%.3f\n", 100.0 * f.jumpFraction,
               f.gap.mean, f.gap.p95, f.gap.max, 100.0 * f.gap.wideFraction, f.cut.p95, f.cut.max,
               100.0 * f.strictFraction, 100.0 * f.halfVoxelFraction, 100.0 * f.rayJumpFraction,
@@ -61,17 +61,17 @@ void sweep(const Subject& subject, int size, int views) {
     const View view = makeView(field, number, views, size, subject.elevation);
     const FocusView focus(field, view);
     for (std::size_t i = 0; i < 2; ++i) {
-      const BoundaryMeasure measure = focus.measure(clippingSurface(subject, view, boundaries[i]));
+      const BoundaryMeasure measure = focus.measure(makeSurface(subject, view, boundaries[i]));
       worst[i].add(measure);
       std::printf("\"%s\",%d,%s,%.0f", subject.name.c_str(), 360 * number / views, boundaries[i],
                   measure.outlinePoints);
-      printFigures(measure);
+      printValues(measure);
       std::fflush(stdout);
     }
   }
   for (std::size_t i = 0; i < 2; ++i) {
     std::printf("\"%s\",worst,%s,", subject.name.c_str(), boundaries[i]);
-    printFigures(worst[i]);
+    printValues(worst[i]);
   }
 }
 

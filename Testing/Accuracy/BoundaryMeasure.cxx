@@ -51,21 +51,19 @@ Distances summarize(std::vector<double> values) {
 } // namespace
 
 FocusView::FocusView(const FocusField& field, const View& view)
-    : m_field(field),
-      m_view(view),
-      m_across(raysAcrossPixel * static_cast<std::size_t>(view.size)) {
+    : m_field(field), m_view(view), m_width(raysAcrossPixel * static_cast<std::size_t>(view.size)) {
   traceRays();
   traceOutline();
 }
 
 double FocusView::focusDepth(const Vec2& raster) const {
   const View::CameraRay ray = m_view.cameraRay(raster);
-  return ray.depthPerLength * m_field.firstHit(ray.origin, ray.direction);
+  return ray.depthPerLength * m_field.findFirstHit(ray.origin, ray.direction);
 }
 
 Vec2 FocusView::rasterPosition(std::size_t ray) const {
-  const auto column = static_cast<double>(ray % m_across);
-  const auto row = static_cast<double>(ray / m_across);
+  const auto column = static_cast<double>(ray % m_width);
+  const auto row = static_cast<double>(ray / m_width);
   return Vec2(column + jitter(2 * ray), row + jitter(2 * ray + 1)) / double{raysAcrossPixel};
 }
 
@@ -77,9 +75,9 @@ void FocusView::traceRays() {
       m_centers[row * size + column] =
           focusDepth(Vec2(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5));
   });
-  m_rays.resize(m_across * m_across);
-  tbb::parallel_for(std::size_t{0}, m_across, [&](std::size_t row) {
-    for (std::size_t ray = row * m_across; ray < (row + 1) * m_across; ++ray)
+  m_rays.resize(m_width * m_width);
+  tbb::parallel_for(std::size_t{0}, m_width, [&](std::size_t row) {
+    for (std::size_t ray = row * m_width; ray < (row + 1) * m_width; ++ray)
       m_rays[ray] = focusDepth(rasterPosition(ray));
   });
 }
@@ -92,23 +90,23 @@ void FocusView::traceOutline() {
       return;
     m_outline.push_back(aIn ? findEdge(a, b) : findEdge(b, a));
     const Point& end = m_outline.back().inner;
-    DepthRange& range = m_outlineDepths[nearestRay(end.raster)];
+    DepthRange& range = m_outlineDepths[findNearestRay(end.raster)];
     range = {std::min(range.least, end.depth), std::max(range.greatest, end.depth)};
   };
-  for (std::size_t row = 0; row + 1 < m_across; ++row)
-    for (std::size_t column = 0; column + 1 < m_across; ++column) {
-      const std::size_t ray = row * m_across + column;
+  for (std::size_t row = 0; row + 1 < m_width; ++row)
+    for (std::size_t column = 0; column + 1 < m_width; ++column) {
+      const std::size_t ray = row * m_width + column;
       compare(ray, ray + 1);
-      compare(ray, ray + m_across);
+      compare(ray, ray + m_width);
     }
 }
 
-/// Ray whose part of a pixel contains a raster position.
-std::size_t FocusView::nearestRay(const Vec2& raster) const {
-  const auto part = [&](double x) {
-    return std::min(static_cast<std::size_t>(x * double{raysAcrossPixel}), m_across - 1);
+/// Ray of the subpixel that contains a raster position.
+std::size_t FocusView::findNearestRay(const Vec2& raster) const {
+  const auto subpixel = [&](double x) {
+    return std::min(static_cast<std::size_t>(x * double{raysAcrossPixel}), m_width - 1);
   };
-  return part(raster.y()) * m_across + part(raster.x());
+  return subpixel(raster.y()) * m_width + subpixel(raster.x());
 }
 
 FocusView::Edge FocusView::findEdge(std::size_t in, std::size_t out) const {
@@ -137,14 +135,14 @@ bool FocusView::isAtJump(const Point& point) const {
 }
 
 bool FocusView::isAtOutlineJump(const Point& point) const {
-  const std::size_t ray = nearestRay(point.raster);
-  const std::size_t column = ray % m_across, row = ray / m_across;
+  const std::size_t ray = findNearestRay(point.raster);
+  const std::size_t column = ray % m_width, row = ray / m_width;
   double least = infinity, greatest = -infinity;
-  for (std::size_t r = std::max<std::size_t>(row, 1) - 1; r <= std::min(row + 1, m_across - 1); ++r)
+  for (std::size_t r = std::max<std::size_t>(row, 1) - 1; r <= std::min(row + 1, m_width - 1); ++r)
     for (std::size_t c = std::max<std::size_t>(column, 1) - 1;
-         c <= std::min(column + 1, m_across - 1); ++c) {
-      least = std::min(least, m_outlineDepths[r * m_across + c].least);
-      greatest = std::max(greatest, m_outlineDepths[r * m_across + c].greatest);
+         c <= std::min(column + 1, m_width - 1); ++c) {
+      least = std::min(least, m_outlineDepths[r * m_width + c].least);
+      greatest = std::max(greatest, m_outlineDepths[r * m_width + c].greatest);
     }
   return greatest - least > jumpDepth;
 }
@@ -212,9 +210,9 @@ ImageMatch FocusView::match(const std::vector<float>& depths, const Surface& sur
         }
       if (!isContext)
         continue;
-      const double seen = double{depths[pixel]};
+      const double depth = double{depths[pixel]};
       result.pixels += 1.0;
-      result.fraction += seen >= least - tolerance && seen <= greatest + tolerance ? 1.0 : 0.0;
+      result.fraction += depth >= least - tolerance && depth <= greatest + tolerance ? 1.0 : 0.0;
     }
   result.fraction /= result.pixels;
   return result;

@@ -9,9 +9,9 @@
 //   If the surface is much closer to the camera just outside than just inside, the context rises
 //   like a cliff.
 // - Depth jump: a difference > jumpDepth among the focus depths at the ray and the four surrounding
-//   pixel centers, or among the outline depths in the surrounding parts of pixels. There, one part
-//   of the focus occludes another, so the outline has two depths. Fractions are reported with and
-//   without jumps.
+//   pixel centers, or among the outline depths at the neighboring rays. There, one part of the
+//   focus occludes another, so the outline has two depths. Fractions are reported with and without
+//   jumps.
 
 #include "FocusField.h"
 #include "Views.h"
@@ -81,11 +81,11 @@ private:
   Edge findEdge(std::size_t in, std::size_t out) const;
   bool isAtJump(const Point& point) const;
   bool isAtOutlineJump(const Point& point) const;
-  std::size_t nearestRay(const Vec2& raster) const;
+  std::size_t findNearestRay(const Vec2& raster) const;
 
   const FocusField& m_field;
   View m_view;
-  std::size_t m_across;          ///< rays per row
+  std::size_t m_width;           ///< rays per row
   std::vector<double> m_centers; ///< focus depth at pixel centers; infinity: ray misses
   std::vector<double> m_rays;    ///< focus depth on the rays; infinity: ray misses
   std::vector<Edge> m_outline;

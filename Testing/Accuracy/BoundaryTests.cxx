@@ -24,7 +24,7 @@ TEST(FocusField, FirstHitOnBallMatchesClosedForm) {
   EXPECT_NEAR(field.radius(), 20.0, 1e-12);
   for (int i = -24; i <= 24; ++i) {
     const double height = i;
-    const double distance = field.firstHit({-100.0, 25.0, 26.0 + height}, Vec3::UnitX());
+    const double distance = field.findFirstHit({-100.0, 25.0, 26.0 + height}, Vec3::UnitX());
     if (std::abs(height) > 21.0) {
       EXPECT_EQ(distance, infinity);
     } else if (std::abs(height) < 19.0) {
@@ -41,9 +41,9 @@ TEST(FocusField, BoxFaceIsHalfwayBetweenVoxelCenters) {
       for (std::size_t x = 2; x < 6; ++x)
         box.voxels[(z * 8 + y) * 8 + x] = 1;
   const FocusField field(box);
-  EXPECT_NEAR(field.firstHit({3.3, 4.2, -10.0}, Vec3::UnitZ()), 11.5, 1e-9);
-  EXPECT_NEAR(field.firstHit({3.3, 4.2, 20.0}, -Vec3::UnitZ()), 14.5, 1e-9);
-  EXPECT_EQ(field.firstHit({3.3, 6.2, -10.0}, Vec3::UnitZ()), infinity);
+  EXPECT_NEAR(field.findFirstHit({3.3, 4.2, -10.0}, Vec3::UnitZ()), 11.5, 1e-9);
+  EXPECT_NEAR(field.findFirstHit({3.3, 4.2, 20.0}, -Vec3::UnitZ()), 14.5, 1e-9);
+  EXPECT_EQ(field.findFirstHit({3.3, 6.2, -10.0}, Vec3::UnitZ()), infinity);
 }
 
 struct ViewCase {
@@ -56,16 +56,16 @@ struct ViewCase {
 TEST(Boundary, ExactSurfaceGapIsBelowAThirdOfTheSpline) {
   const TemporaryFolder folder;
   Subject knee = makeKnee(folder.path(), "150x172x60");
-  for (const ViewCase& seen :
+  for (const ViewCase& viewCase :
        {ViewCase{0, false, 0.0, 0.0}, ViewCase{1, true, 0.0, 0.0}, ViewCase{2, false, 0.6, 25.0}}) {
-    SCOPED_TRACE(seen.number);
-    knee.smoothing = seen.smoothing;
+    SCOPED_TRACE(viewCase.number);
+    knee.smoothing = viewCase.smoothing;
     const FocusField field(readIndicator(knee));
-    View view = makeView(field, seen.number, 12, 256, seen.elevation);
-    view.isPerspective = seen.isPerspective;
+    View view = makeView(field, viewCase.number, 12, 256, viewCase.elevation);
+    view.isPerspective = viewCase.isPerspective;
     const FocusView focus(field, view);
-    const BoundaryMeasure spline = focus.measure(clippingSurface(knee, view, "spline"));
-    const BoundaryMeasure exact = focus.measure(clippingSurface(knee, view, "exact"));
+    const BoundaryMeasure spline = focus.measure(makeSurface(knee, view, "spline"));
+    const BoundaryMeasure exact = focus.measure(makeSurface(knee, view, "exact"));
     for (const BoundaryMeasure& measure : {spline, exact}) {
       EXPECT_GT(measure.rays, 1e5);
       EXPECT_LT(measure.centerGap, 1e-3);
@@ -88,14 +88,14 @@ TEST(Boundary, ImageShowsContextAtTheSurfaceDepth) {
   const FocusField field(readIndicator(knee));
   const View view = makeView(field, 1, 12, 256, 25.0);
   const FocusView focus(field, view);
-  const Surface spline = clippingSurface(knee, view, "spline");
-  const Surface exact = clippingSurface(knee, view, "exact");
-  const auto splinePicture = renderDepths(knee, view, "spline", folder.path());
-  const auto exactPicture = renderDepths(knee, view, "exact", folder.path());
-  EXPECT_GT(focus.match(splinePicture, spline).fraction, 0.999);
-  EXPECT_GT(focus.match(exactPicture, exact).fraction, 0.999);
-  EXPECT_LT(focus.match(exactPicture, spline).fraction, 0.9);
-  EXPECT_GT(focus.match(exactPicture, exact).pixels, 200.0);
+  const Surface spline = makeSurface(knee, view, "spline");
+  const Surface exact = makeSurface(knee, view, "exact");
+  const auto splineDepths = renderDepths(knee, view, "spline", folder.path());
+  const auto exactDepths = renderDepths(knee, view, "exact", folder.path());
+  EXPECT_GT(focus.match(splineDepths, spline).fraction, 0.999);
+  EXPECT_GT(focus.match(exactDepths, exact).fraction, 0.999);
+  EXPECT_LT(focus.match(exactDepths, spline).fraction, 0.9);
+  EXPECT_GT(focus.match(exactDepths, exact).pixels, 200.0);
 }
 
 } // namespace

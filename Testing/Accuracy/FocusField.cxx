@@ -36,7 +36,7 @@ double findMaximum(double a, double b, const Function& f) {
 }
 
 /// Next t at which a ray, at `index` for t, crosses a face between cells.
-double nextFace(const Vec3& index, const Vec3& direction, double t) {
+double findNextFace(const Vec3& index, const Vec3& direction, double t) {
   double least = infinity;
   for (int axis = 0; axis < 3; ++axis) {
     const double d = direction[axis], x = index[axis];
@@ -152,7 +152,7 @@ double FocusField::at(const Vec3& index) const {
   return (1.0 - f.z()) * layer(low.z()) + f.z() * layer(high.z());
 }
 
-double FocusField::firstHit(const Vec3& origin, const Vec3& direction) const {
+double FocusField::findFirstHit(const Vec3& origin, const Vec3& direction) const {
   const Vec3 o = m_worldToIndex * origin;
   const Vec3 d = m_worldToIndex.linear() * direction;
   double t = 0.0, end = infinity;
@@ -177,7 +177,7 @@ double FocusField::firstHit(const Vec3& origin, const Vec3& direction) const {
     return t;
   while (t < end) {
     const Vec3 index = o + t * d;
-    const double face = nextFace(index, d, t);
+    const double face = findNextFace(index, d, t);
     if (const std::uint8_t radius = m_emptyRadius[cell(o + 0.5 * (t + face) * d)]; radius > 0) {
       t = radius > 1 ? t + (radius - 1) * voxel : face;
       here = value(t);

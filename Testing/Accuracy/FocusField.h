@@ -1,6 +1,6 @@
 #pragma once
 // First intersection of a ray with a segment of a label map, by short steps and bisection on the
-// interpolated indicator. Shares no code with the renderer's search (clip/focus/FocusCells.h).
+// interpolated indicator. Independent of the renderer's search (clip/focus/FocusCells.h).
 
 #include "base/Vector.h"
 
@@ -24,7 +24,7 @@ public:
 
   /// Smallest distance, mm, at which a ray of unit direction is in the focus (trilinear indicator
   /// >= 0.5) and in the volume's box; infinity: the ray misses.
-  double firstHit(const Vec3& origin, const Vec3& direction) const;
+  double findFirstHit(const Vec3& origin, const Vec3& direction) const;
 
   /// Center of the focus voxels' bounding box, world mm.
   Vec3 center() const { return m_center; }

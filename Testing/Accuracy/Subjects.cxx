@@ -46,7 +46,7 @@ RenderRequest makeRequest(const Subject& subject) {
   return request;
 }
 
-Indicator smoothedIndicator(const Subject& subject) {
+Indicator makeSmoothedIndicator(const Subject& subject) {
   const PreparedScene scene(makeRequest(subject));
   const Mask& mask = *scene.focus();
   return {mask.grid.size, mask.grid.indexToWorld, mask.voxels, static_cast<double>(mask.maxValue)};
@@ -64,7 +64,7 @@ Subject makeKnee(const std::filesystem::path& folder, const std::string& size) {
 
 Indicator readIndicator(const Subject& subject) {
   if (subject.smoothing > 0.0)
-    return smoothedIndicator(subject);
+    return makeSmoothedIndicator(subject);
   using Labels = itk::Image<std::int32_t, 3>;
   itk::NiftiImageIOFactory::RegisterOneFactory();
   itk::NrrdImageIOFactory::RegisterOneFactory();
@@ -101,7 +101,7 @@ View makeView(const FocusField& field, int number, int count, int size, double e
   return view;
 }
 
-Surface clippingSurface(const Subject& subject, const View& view, const std::string& boundary) {
+Surface makeSurface(const Subject& subject, const View& view, const std::string& boundary) {
   RenderRequest request = makeRequest(subject);
   request.clip.mode = ClipMode::surface;
   request.clip.surface.boundary = boundary == "exact" ? Boundary::exact : Boundary::spline;

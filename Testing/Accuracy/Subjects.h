@@ -31,7 +31,7 @@ View makeView(const FocusField& field, int number, int count, int size, double e
 
 /// The tested surface, of `--clip surface --boundary …`: depth (mm from the camera plane) at a
 /// raster position.
-Surface clippingSurface(const Subject& subject, const View& view, const std::string& boundary);
+Surface makeSurface(const Subject& subject, const View& view, const std::string& boundary);
 
 /// Renders a clipped image with an opaque volume to `folder`. Returns the depth of the visible
 /// point in each pixel, mm, row by row from the top. Requires an orthographic view and a Slicer

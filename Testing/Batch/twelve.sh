@@ -40,22 +40,22 @@ knee atlas,$data/spl_knee_atlas_labels/SYNTHETIC_mr_256.nii.gz,$data/spl_knee_at
 TABLE
 batch=("$fenestra" batch cases.csv --output results "$@")
 
-# done_rows: number of finished rows, by their manifests.
-done_rows() { { grep -ls '"status": 0$' results/*/*.study.json || true; } | wc -l; }
+# count_done_rows: prints the number of finished rows, by their manifests.
+count_done_rows() { { grep -ls '"status": 0$' results/*/*.study.json || true; } | wc -l; }
 
 "${batch[@]}" >first.log 2>&1 &
 id=$!
-while [ "$(done_rows)" -lt 6 ] && kill -0 $id 2>/dev/null; do sleep 0.1; done
+while [ "$(count_done_rows)" -lt 6 ] && kill -0 $id 2>/dev/null; do sleep 0.1; done
 kill -KILL $id || fail "the batch ended before it could be killed: $(tail -n 1 first.log)"
 wait $id 2>/dev/null || true
-before=$(done_rows)
+before=$(count_done_rows)
 [ ! -e results/study.csv ] || fail "the killed batch has written its summary"
 grep -ls '"status": 0$' results/*/*.study.json | sed 's/study.json$/json/' | tr '\n' '\0' |
   xargs -0 sha256sum >finished.sums
 
 "${batch[@]}" | tee second.log
 sha256sum --quiet -c finished.sums || fail "a finished row was rendered again"
-[ "$(done_rows)" -eq 12 ] || fail "$(done_rows) of 12 rows are done"
+[ "$(count_done_rows)" -eq 12 ] || fail "$(count_done_rows) of 12 rows are done"
 grep -q "12 of 12 rows done, $((12 - before)) rendered now" second.log ||
   fail "expected exactly the missing rows to be rendered: $(tail -n 1 second.log)"
 [ "$(grep -c ',done,0,' results/study.csv)" -eq 12 ] || fail "the summary has too few finished rows"

@@ -1,6 +1,6 @@
 #pragma once
-// Trackers of other renderers, for use in our path estimator: delta tracking with one majorant for
-// the volume, and ray marching as in medical renderers. Both have the members of Tracker.
+// Trackers of other renderers, used in Fenestra's path integrator: delta tracking with one majorant
+// for the volume, and ray marching as in medical renderers. Both have the members of Tracker.
 
 #include "integrator/render/Render.h"
 
@@ -151,14 +151,14 @@ private:
 template <typename MakeTracker>
 Film traceImage(const SceneView& scene, const RenderSettings& settings, MakeTracker&& makeTracker) {
   Film film(scene.camera.width(), scene.camera.height());
-  const Sampler source(Sampling::independent, settings.seed);
+  const Sampler sampler(Sampling::independent, settings.seed);
   const std::atomic<bool> stop = false;
   const auto tracePixels = [&](const auto& estimator) {
     tbb::parallel_for(0, film.height(), [&](int row) {
       Counters counters;
       for (int column = 0; column < film.width(); ++column)
         for (std::uint64_t sample = 0; sample < settings.samples; ++sample) {
-          const PrimarySamples numbers = source.generate(film.index(column, row), sample);
+          const PrimarySamples numbers = sampler.generate(film.index(column, row), sample);
           const Vec2 jitter = toUniform2(numbers.position);
           film.at(column, row)
               .add(*estimator.trace(column + jitter.x(), row + jitter.y(), numbers, counters));

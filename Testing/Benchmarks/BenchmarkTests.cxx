@@ -63,12 +63,11 @@ TEST(Marching, BiasShrinksWithShorterSteps) {
   const RenderOptions options = makeCase(std::string("foot product") + foot).options();
   const PreparedScene scene(options.scene);
   const Image reference = renderMode("scalar", scene, options, 128, 1);
-  const auto [whole, error] =
-      measureBias(renderMode("marching", scene, options, 128, 2), reference);
+  const auto [full, error] = measureBias(renderMode("marching", scene, options, 128, 2), reference);
   const auto [half, halfError] =
       measureBias(renderMode("marching-half", scene, options, 128, 3), reference);
-  EXPECT_GT(std::abs(whole), 4.0 * error) << whole;
-  EXPECT_LT(std::abs(half), std::abs(whole)) << half << " ± " << halfError;
+  EXPECT_GT(std::abs(full), 4.0 * error) << full;
+  EXPECT_LT(std::abs(half), std::abs(full)) << half << " ± " << halfError;
 }
 
 /// A ray across a homogeneous wall that is a quarter of a voxel thick (voxels of 1 mm). Returns the
@@ -141,7 +140,7 @@ std::vector<Point> idealCurve(std::initializer_list<double> seconds) {
 }
 
 TEST(Efficiency, TargetWithinTheCurveIsInterpolated) {
-  const auto efficiency = efficiencyNear(idealCurve({2.0, 16.0, 70.0, 300.0}), 1e-3);
+  const auto efficiency = findEfficiency(idealCurve({2.0, 16.0, 70.0, 300.0}), 1e-3);
   ASSERT_TRUE(efficiency);
   EXPECT_NEAR(efficiency->value, 20.0, 1e-9);
   EXPECT_EQ(efficiency->relMse, 1e-3);
@@ -150,11 +149,11 @@ TEST(Efficiency, TargetWithinTheCurveIsInterpolated) {
 TEST(Efficiency, TargetBeyondTheCurveTakesTheNearestPoint) {
   std::vector<Point> curve = idealCurve({2.0, 16.0});
   curve.push_back({.samples = 16, .seeds = 1, .cpuSeconds = 40.0, .relMse = -1e-6});
-  const auto efficiency = efficiencyNear(curve, 1e-3);
+  const auto efficiency = findEfficiency(curve, 1e-3);
   ASSERT_TRUE(efficiency);
   EXPECT_NEAR(efficiency->value, 20.0, 1e-9);
   EXPECT_NEAR(efficiency->relMse, 1.0 / 320.0, 1e-12);
-  EXPECT_FALSE(efficiencyNear({curve.back()}, 1e-3));
+  EXPECT_FALSE(findEfficiency({curve.back()}, 1e-3));
 }
 
 TEST(CurveRecords, MergingReplacesTheSameSceneAndMode) {
@@ -177,7 +176,7 @@ TEST(CurveRecords, MergingReplacesTheSameSceneAndMode) {
 }
 
 /// Runs the program on three scenes, one of which is missing.
-class WholeRun : public ::testing::Test {
+class CompleteRun : public ::testing::Test {
 protected:
   static int runProgram(const TemporaryFolder& folder) {
     const auto table =
@@ -192,7 +191,7 @@ protected:
   }
 };
 
-TEST_F(WholeRun, ReportHasARowForEverySceneAndMode) {
+TEST_F(CompleteRun, ReportHasARowForEverySceneAndMode) {
   const TemporaryFolder folder;
   ASSERT_EQ(runProgram(folder), 0);
   const std::vector<CurveRecord> curves = readCurves(folder / "report");

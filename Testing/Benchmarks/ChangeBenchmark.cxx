@@ -22,20 +22,20 @@ struct Change {
   std::function<void(RenderRequest&)> apply;
 };
 
-std::string listStages(const UpdatedStages& made) {
-  const std::pair<const char*, bool> stages[] = {{"volume", made.volume},
-                                                 {"focus", made.focus},
-                                                 {"transfer function", made.transfer},
-                                                 {"camera", made.camera},
-                                                 {"lights", made.lights},
-                                                 {"clip", made.clip},
-                                                 {"ranges", made.minMaxGrid},
-                                                 {"majorants", made.majorants},
-                                                 {"label weights", made.labelWeights},
-                                                 {"colors", made.tint}};
+std::string listStages(const UpdatedStages& updated) {
+  const std::pair<const char*, bool> stages[] = {{"volume", updated.volume},
+                                                 {"focus", updated.focus},
+                                                 {"transfer function", updated.transfer},
+                                                 {"camera", updated.camera},
+                                                 {"lights", updated.lights},
+                                                 {"clip", updated.clip},
+                                                 {"ranges", updated.minMaxGrid},
+                                                 {"majorants", updated.majorants},
+                                                 {"label weights", updated.labelWeights},
+                                                 {"colors", updated.tint}};
   std::string list;
-  for (const auto& [name, isMade] : stages)
-    if (isMade)
+  for (const auto& [name, isUpdated] : stages)
+    if (isUpdated)
       list.append(list.empty() ? "" : "; ").append(name);
   return list;
 }
@@ -55,9 +55,9 @@ PreparedScene printChange(const char* change, const RenderSettings& settings,
                           const std::function<PreparedScene()>& prepare) {
   const Stopwatch watch;
   PreparedScene scene = prepare();
-  const double made = watch.seconds();
-  std::cout << change << ',' << listStages(scene.updatedStages()) << ',' << made << ','
-            << made + timeFirstSample(scene, settings) << '\n';
+  const double seconds = watch.seconds();
+  std::cout << change << ',' << listStages(scene.updatedStages()) << ',' << seconds << ','
+            << seconds + timeFirstSample(scene, settings) << '\n';
   return scene;
 }
 
@@ -98,8 +98,8 @@ int main(int argc, char** argv) {
   try {
     if (argc < 3)
       throw fenestra::usageError("usage: ChangeBenchmark FOCUS ARGUMENTS...");
-    if (const auto flags = fenestra::parseCommandLine(fenestra::renderSyntax, argc, argv, 2))
-      fenestra::measure(argv[1], fenestra::makeRenderOptions(*flags));
+    if (const auto values = fenestra::parseCommandLine(fenestra::renderSyntax, argc, argv, 2))
+      fenestra::measure(argv[1], fenestra::makeRenderOptions(*values));
     return 0;
   } catch (const fenestra::Error& error) {
     std::cerr << "ChangeBenchmark: " << error.what() << '\n';

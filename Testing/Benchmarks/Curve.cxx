@@ -25,9 +25,9 @@ Sample measure(const Mode& mode, const PreparedScene& scene, const RenderSetting
 
   // One tile covers the image. The channels of a path are correlated, so the error of their mean is
   // at most the mean of their errors.
-  const int whole = std::max(image.width, image.height);
-  const Image mean = computeTileMeans(image, whole),
-              referenceMean = computeTileMeans(reference, whole);
+  const int size = std::max(image.width, image.height);
+  const Image mean = computeTileMeans(image, size),
+              referenceMean = computeTileMeans(reference, size);
   Sample sample{seconds, compareImages(image, reference).relMse, 0.0, 0.0, 0.0};
   for (const std::string channel : {"R", "G", "B"}) {
     const double scale = 1.0 / (3.0 * referenceMean.find(channel)->front());
@@ -63,28 +63,28 @@ std::vector<Point> measureCurve(const Mode& mode, const PreparedScene& scene,
                                 const RenderSettings& settings, const Image& reference,
                                 const CurveSettings& limits) {
   std::vector<Point> curve;
-  double spent = 0.0;
-  RenderSettings used = settings;
-  for (used.samples = limits.samples;; used.samples *= 2) {
+  double total = 0.0;
+  RenderSettings pointSettings = settings;
+  for (pointSettings.samples = limits.samples;; pointSettings.samples *= 2) {
     std::vector<Sample> renders;
-    const auto affordable = [&](double seconds) { return spent + seconds <= limits.budget; };
-    if (!curve.empty() && !affordable(2.0 * curve.back().cpuSeconds))
+    const auto fitsBudget = [&](double seconds) { return total + seconds <= limits.budget; };
+    if (!curve.empty() && !fitsBudget(2.0 * curve.back().cpuSeconds))
       return curve;
     for (int seed = 0; seed < limits.seeds; ++seed) {
-      used.seed = static_cast<std::uint64_t>(seed);
-      renders.push_back(measure(mode, scene, used, reference));
-      spent += renders.back().cpuSeconds;
-      if (!affordable(renders.back().cpuSeconds))
+      pointSettings.seed = static_cast<std::uint64_t>(seed);
+      renders.push_back(measure(mode, scene, pointSettings, reference));
+      total += renders.back().cpuSeconds;
+      if (!fitsBudget(renders.back().cpuSeconds))
         break;
     }
-    curve.push_back(summarize(used.samples, renders));
+    curve.push_back(summarize(pointSettings.samples, renders));
     if (curve.back().relMse < limits.leastRelMse)
       return curve;
   }
 }
 
-std::optional<Efficiency> efficiencyNear(const std::vector<Point>& curve, double relMse) {
-  const double wanted = std::log(relMse);
+std::optional<Efficiency> findEfficiency(const std::vector<Point>& curve, double relMse) {
+  const double target = std::log(relMse);
   const Point* last = nullptr;
   std::optional<Efficiency> nearest;
   for (const Point& point : curve) {
@@ -92,13 +92,13 @@ std::optional<Efficiency> efficiencyNear(const std::vector<Point>& curve, double
       continue;
     if (last && last->relMse >= relMse && point.relMse < relMse) {
       const double fraction =
-          (wanted - std::log(last->relMse)) / std::log(point.relMse / last->relMse);
+          (target - std::log(last->relMse)) / std::log(point.relMse / last->relMse);
       const double seconds =
           last->cpuSeconds * std::pow(point.cpuSeconds / last->cpuSeconds, fraction);
       return Efficiency{1.0 / (relMse * seconds), relMse};
     }
     if (!nearest ||
-        std::abs(std::log(point.relMse) - wanted) < std::abs(std::log(nearest->relMse) - wanted))
+        std::abs(std::log(point.relMse) - target) < std::abs(std::log(nearest->relMse) - target))
       nearest = Efficiency{point.efficiency(), point.relMse};
     last = &point;
   }

@@ -40,6 +40,6 @@ std::vector<Point> measureCurve(const Mode& mode, const PreparedScene& scene,
 struct Efficiency {
   double value, relMse;
 };
-std::optional<Efficiency> efficiencyNear(const std::vector<Point>& curve, double relMse);
+std::optional<Efficiency> findEfficiency(const std::vector<Point>& curve, double relMse);
 
 } // namespace fenestra::benchmarks

@@ -17,7 +17,7 @@ namespace fenestra::benchmarks {
 namespace {
 
 constexpr const char* group = "Benchmark";
-const Option flags[] = {
+const Option optionTable[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
     {"modes", "A,B,...", group, "Render modes of Modes.cxx [all]"},
     {"budget", "SECONDS", group, "CPU time per curve [60]", ValueSpec::number(1e-3, 1e6)},
@@ -37,7 +37,7 @@ const Option flags[] = {
 };
 
 const CommandSyntax syntax = {
-    "EfficiencyBenchmark", "Measures relMSE against CPU seconds.", {}, flags};
+    "EfficiencyBenchmark", "Measures relMSE against CPU seconds.", {}, optionTable};
 
 struct Options {
   std::vector<SceneCase> table;
@@ -103,7 +103,7 @@ std::vector<CurveRecord> measureScene(const SceneCase& sceneCase, const Options&
   const Reference reference = findReference(sceneCase, scene, settings, options.reference);
   std::vector<CurveRecord> curves;
   for (const Mode* mode : options.modes) {
-    curves.push_back({sceneCase.name, mode->name, reference.maker, reference.relMse,
+    curves.push_back({sceneCase.name, mode->name, reference.source, reference.relMse,
                       measureCurve(*mode, scene, settings, reference.image, options.curve)});
     const Point& last = curves.back().points.back();
     std::cout << std::setprecision(3) << sceneCase.name << ", " << mode->name << ": "

@@ -131,7 +131,7 @@ void compare(const std::string& self, const Path& folder, const std::string& nam
     bare.keepMinimum(measureCost({self, "--bare", file}));
     first.keepMinimum(
         measureCost({FENESTRA_EXECUTABLE, file, "--clip", "none", "--size", "64x64", "--samples",
-                     "1", "--progress", "none", "--output", folder / "picture.exr"}));
+                     "1", "--progress", "none", "--output", folder / "image.exr"}));
   }
   print("ITK " + name, bare);
   print("Fenestra " + name, first);

@@ -31,9 +31,9 @@ constexpr Mode table[] = {
        return renderProduct(scene, settings);
      }},
     {"adaptive",
-     "like product, toward a noise target: noisier pixels get more samples, after a pilot of 16",
+     "like product, with a noise target: after a pilot of 16 samples, noisier pixels get more",
      [](const SceneView& scene, RenderSettings settings) {
-       settings.noise = 1e-6; // out of reach: the sample count ends the render
+       settings.noise = 1e-6; // too low to be met: the sample count ends the render
        return renderProduct(scene, settings);
      }},
     {"scalar", "the scalar integrator: null collisions in a majorant grid, independent samples",

@@ -103,7 +103,7 @@ std::optional<Image> readIfExists(const std::filesystem::path& path) {
 }
 
 std::optional<Reference> findIndependent(const SceneCase& sceneCase, const PreparedScene& scene) {
-  if (sceneCase.maker != ReferenceMaker::independent)
+  if (sceneCase.source != ReferenceSource::independent)
     return std::nullopt;
   const std::string file = sceneCase.independent.string();
   std::optional<Image> image = readIfExists(file + "_best.exr");
@@ -130,8 +130,8 @@ std::string makeCacheKey(const SceneCase& sceneCase, const PreparedScene& scene,
 
 } // namespace
 
-Reference::Reference(Image imageIn, std::string makerIn)
-    : image(std::move(imageIn)), maker(std::move(makerIn)) {
+Reference::Reference(Image imageIn, std::string sourceIn)
+    : image(std::move(imageIn)), source(std::move(sourceIn)) {
   double sum = 0.0;
   std::size_t count = 0;
   for (const char* name : colors) {
@@ -148,20 +148,20 @@ Reference findReference(const SceneCase& sceneCase, const PreparedScene& scene,
                         const RenderSettings& settings, const ReferenceSettings& wanted) {
   if (std::optional<Reference> independent = findIndependent(sceneCase, scene))
     return *std::move(independent);
-  const std::string maker = sceneCase.maker == ReferenceMaker::oracle ? "oracle" : "product";
+  const std::string source = sceneCase.source == ReferenceSource::oracle ? "oracle" : "product";
   const std::filesystem::path path = wanted.folder / (sceneCase.name + ".exr");
   const std::string command = makeCacheKey(sceneCase, scene, wanted);
   if (std::optional<Image> cached = readIfExists(path))
-    if (cached->header["command"] == command && cached->header["maker"] == maker)
-      return Reference(*std::move(cached), maker);
-  Image image = sceneCase.maker == ReferenceMaker::oracle
+    if (cached->header["command"] == command && cached->header["maker"] == source)
+      return Reference(*std::move(cached), source);
+  Image image = sceneCase.source == ReferenceSource::oracle
                     ? renderByOracle(sceneCase.options(), scene, settings, wanted)
                     : renderByProduct(scene, settings, wanted);
   image.header["command"] = command;
-  image.header["maker"] = maker;
+  image.header["maker"] = source;
   std::filesystem::create_directories(wanted.folder);
   writeImage(image, makeImagePlane(scene.camera()), path);
-  return Reference(std::move(image), maker);
+  return Reference(std::move(image), source);
 }
 
 Image toImage(const Film& film, const PreparedScene& scene) {

@@ -17,10 +17,10 @@ struct ReferenceSettings {
 
 struct Reference {
   Image image; ///< R, G, B and their standard errors
-  std::string maker;
+  std::string source;
   double relMse = 0.0; ///< of the reference, from its standard errors
 
-  Reference(Image imageIn, std::string makerIn);
+  Reference(Image imageIn, std::string sourceIn);
 };
 
 /// Returns the scene's independent reference if there is one of the same size, else the cached

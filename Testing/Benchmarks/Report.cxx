@@ -77,7 +77,7 @@ std::string toScientific(double x) {
 }
 
 std::string makeEfficiencyCell(const CurveRecord& curve) {
-  const std::optional<Efficiency> efficiency = efficiencyNear(curve.points, quotedRelMse);
+  const std::optional<Efficiency> efficiency = findEfficiency(curve.points, quotedRelMse);
   if (!efficiency)
     return "no measurable error";
   std::ostringstream out;

@@ -12,7 +12,7 @@ namespace fenestra::benchmarks {
 /// Curve of a mode in a scene. A missing scene has one record without a mode and points.
 struct CurveRecord {
   std::string scene, mode;
-  std::string reference;        ///< maker of the reference
+  std::string reference;        ///< source of the reference
   double referenceRelMse = 0.0; ///< of the reference itself
   std::vector<Point> points = {};
 };

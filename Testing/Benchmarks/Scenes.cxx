@@ -66,13 +66,13 @@ private:
     return words;
   }
 
-  ReferenceMaker parseMaker(const std::string& word) const {
-    const std::map<std::string, ReferenceMaker> makers = {
-        {"independent", ReferenceMaker::independent},
-        {"oracle", ReferenceMaker::oracle},
-        {"product", ReferenceMaker::product}};
-    const auto found = makers.find(word);
-    if (found == makers.end())
+  ReferenceSource parseSource(const std::string& word) const {
+    const std::map<std::string, ReferenceSource> sources = {
+        {"independent", ReferenceSource::independent},
+        {"oracle", ReferenceSource::oracle},
+        {"product", ReferenceSource::product}};
+    const auto found = sources.find(word);
+    if (found == sources.end())
       throw inputError(m_path.string(),
                        "'" + word + "': expected REFERENCE independent, oracle or product");
     return found->second;
@@ -81,7 +81,7 @@ private:
   SceneCase parseScene(const Arguments& words) const {
     SceneCase scene;
     scene.name = words[0];
-    scene.maker = parseMaker(words[1]);
+    scene.source = parseSource(words[1]);
     for (std::size_t i = 2; i < words.size(); ++i) {
       const std::string word = resolvePath(words[i], scene);
       const std::filesystem::path path = word;
@@ -121,10 +121,10 @@ RenderOptions SceneCase::options() const {
   std::vector<char*> argv;
   for (std::string& word : words)
     argv.push_back(word.data());
-  const auto flags = parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
-  if (!flags)
+  const auto values = parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
+  if (!values)
     throw usageError("--scenes: " + name + " only prints help; fix its line in scenes.txt");
-  return makeRenderOptions(*flags);
+  return makeRenderOptions(*values);
 }
 
 std::vector<SceneCase> readScenes(const std::filesystem::path& table, const Folders& folders) {

@@ -14,7 +14,7 @@ struct Folders {
   std::filesystem::path reference, data, phantoms;
 };
 
-enum class ReferenceMaker {
+enum class ReferenceSource {
   independent, ///< other renderers: FILE_best.exr and FILE_best_se.exr next to FILE.arguments
   oracle,      ///< Testing/Oracle; for scenes without a clip
   product,     ///< the renderer with other seeds, for scenes that would take the oracle hours
@@ -22,7 +22,7 @@ enum class ReferenceMaker {
 
 struct SceneCase {
   std::string name;
-  ReferenceMaker maker = ReferenceMaker::product;
+  ReferenceSource source = ReferenceSource::product;
   std::filesystem::path independent;  ///< FILE of an independent reference
   std::vector<std::string> arguments; ///< arguments of `fenestra`
   std::string missing;                ///< a required file that does not exist, or empty

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Builds Release, counts instructions per path (callgrind, AVX2, one thread), and compares the counts with
 # Testing/Benchmarks/Report/instructions.csv. Exits with status 1 and names each scene that needs over 3 %
-# more. Takes about three minutes; other load on the machine does not matter.
+# more. Takes about three minutes; also on a busy machine.
 # usage: bash Testing/Benchmarks/instructions.sh [--record | --program FILE]
 #   --record        stores the counts as the new record, even if they are worse
-#   --program FILE  counts in another fenestra executable (of another commit, say) and builds nothing
+#   --program FILE  counts in another fenestra executable (such as another commit's) and builds nothing
 # FENESTRA_BUILD selects another build folder, FENESTRA_REFERENCE that of S1, S2 and S2hi
 # (../shared/reference next to the project); missing scenes are skipped.
 set -euo pipefail
@@ -26,8 +26,8 @@ size=128x128
 counts=(1 17) # samples per pixel; the difference is one block of stratified samples (base/Sampler.h)
 tolerance=3   # percent
 
-# count SAMPLES ARGUMENT...: prints the instructions and the paths of a render.
-count() {
+# count_instructions SAMPLES ARGUMENT...: prints the instructions and the paths of a render.
+count_instructions() {
   FENESTRA_INSTRUCTIONS=AVX2 LD_PRELOAD=$work/timer.so valgrind --tool=callgrind --callgrind-out-file=/dev/null \
     "$program" "${@:2}" --samples "$1" --seed 1 --threads 1 --progress none \
     --output "$work/image.exr" --stats "$work/stats.json" >"$work/log.txt" 2>&1 ||
@@ -36,17 +36,17 @@ count() {
   sed -n 's/.*"paths": \([0-9]*\),/\1/p' "$work/stats.json"
 }
 
-# per_path ARGUMENT...: prints the instructions per path, without the constant part of a render.
-per_path() {
+# count_per_path ARGUMENT...: prints the instructions per path, without the constant part of a render.
+count_per_path() {
   local few many
-  few=$(count "${counts[0]}" "$@") || exit
-  many=$(count "${counts[1]}" "$@") || exit
+  few=$(count_instructions "${counts[0]}" "$@") || exit
+  many=$(count_instructions "${counts[1]}" "$@") || exit
   awk -v few="$few" -v many="$many" \
     'BEGIN { split(few, f, "\n"); split(many, m, "\n"); printf "%.0f", (m[1] - f[1]) / (m[2] - f[2]) }'
 }
 
-# recorded SCENE COLUMN: prints a cell of the record (see `header` below), or nothing if it is missing.
-recorded() {
+# get_recorded SCENE COLUMN: prints a cell of the record (see `header` below), or nothing if it is missing.
+get_recorded() {
   [ ! -e "$record" ] || awk -F , -v scene="$1" -v column="$2" '$1 == scene { print $column }' "$record"
 }
 
@@ -70,7 +70,7 @@ compiler=$("${compiler:-c++}" --version | head -n 1 | tr , ' ')
 say "Instructions per path"
 rows=() slower=()
 for scene in S1 S2 S2hi knee; do
-  before=$(recorded $scene 4)
+  before=$(get_recorded $scene 4)
   arguments=("$knee/knee.mrml" --focus FemoralCartilage --clip surface --boundary exact --materials none --size $size)
   if [ $scene != knee ]; then
     if [ ! -e "$reference/$scene.arguments" ]; then
@@ -80,11 +80,11 @@ for scene in S1 S2 S2hi knee; do
     fi
     mapfile -t arguments < <(sed "/^--size\$/{n;s/.*/$size/}" "$reference/$scene.arguments")
   fi
-  now=$(cd "$reference" 2>/dev/null || true; per_path "${arguments[@]}")
+  now=$(cd "$reference" 2>/dev/null || true; count_per_path "${arguments[@]}")
   echo "$scene: $now (record: ${before:-none})"
   awk -v now="$now" -v before="${before:-0}" "BEGIN { exit !(now > before * (1 + $tolerance / 100)) }" &&
     slower+=("$scene")
-  rows+=("$scene,$(recorded $scene 2),$before,$now,$(date +%F),$compiler,$(valgrind --version)")
+  rows+=("$scene,$(get_recorded $scene 2),$before,$now,$(date +%F),$compiler,$(valgrind --version)")
 done
 if [ "$mode" = --record ]; then
   header=scene,instructions_at_044d203,instructions_at_previous_record,instructions,date,compiler,valgrind

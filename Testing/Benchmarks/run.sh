@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds Release, measures error against time over scenes and modes, then single components and the time
-# after a change, and writes Testing/Benchmarks/Report. Run it on an idle machine.
+# Builds Release, measures error against time over scenes and modes, then single components and the time from
+# a change to the first new sample, and writes Testing/Benchmarks/Report. Run it on an idle machine.
 # usage: bash Testing/Benchmarks/run.sh [--scenes A,B] [--modes A,B] [--budget CPU-SECONDS] [...]
 # All arguments are passed to EfficiencyBenchmark (see its --help). Results of other scenes and modes in
 # the report are kept. FENESTRA_BUILD selects another build folder.
@@ -23,15 +23,15 @@ done
 say "Error against time"
 "$folder/bin/EfficiencyBenchmark" --output "$report" "$@"
 # The README quotes medians over all scenes.
-# median_ratio COLUMN: ratio of the product's efficiency to that of the mode in the column.
-median_ratio() {
+# get_median_ratio COLUMN: prints the ratio of the product's efficiency to that of the mode in the column.
+get_median_ratio() {
   sed -n '/^## Efficiency/,/^## Other/p' "$report/README.md" |
     awk -F '|' -v column="$1" '$4 + 0 > 0 { print $4 / $column }' | sort -g |
     awk '{ ratios[NR] = $1 } END { printf "%.2g", (ratios[int((NR + 1) / 2)] + ratios[int(NR / 2) + 1]) / 2 }'
 }
-sed -i "/^<!-- speed: /,/^<!-- end of speed/s|^[^<].*|In the median over the benchmark's scenes, its \
-efficiency, 1 / (relMSE × CPU seconds), is $(median_ratio 7) times that of delta tracking with one majorant, and \
-$(median_ratio 8) times that of ray marching, which is biased.|" "$top/README.md"
+sed -i "/^<!-- speed: /,/^<!-- end of speed/s|^[^<].*|In the median over the benchmark's scenes, Fenestra's \
+efficiency, 1 / (relMSE × CPU seconds), is $(get_median_ratio 7) times that of delta tracking with one majorant, and \
+$(get_median_ratio 8) times that of ray marching, which is biased.|" "$top/README.md"
 # store NAME COMMAND...: prints the output of a command, and stores it as the record NAME if it succeeds.
 store() {
   local output=$folder/benchmarks/$1.csv

@@ -55,12 +55,12 @@ TEST_F(BatchCommand, RowsEqualThoseOfRender) {
   const std::vector<std::pair<std::string, Arguments>> rows = {
       {"left", {"--focus", "A", "--view", "left"}},
       {"Bone, left", {"--focus", "A", "--samples", "3"}}};
-  for (const auto& [name, flags] : rows) {
+  for (const auto& [name, options] : rows) {
     Arguments single = {"volume.nrrd", "--segmentation", "segments.seg.nrrd", "--size",    "16x16",
                         "--output",    "single.exr",     "--output",          "single.png"};
     if (name == "left")
       single.insert(single.end(), {"--samples", "2"});
-    single.insert(single.end(), flags.begin(), flags.end());
+    single.insert(single.end(), options.begin(), options.end());
     ASSERT_EQ(run(single, folder.path()).status, 0);
     const std::string base = "out/" + name + "/" + name;
     EXPECT_EQ(readImage(folder / (base + ".exr")).channels,
@@ -77,7 +77,7 @@ TEST_F(BatchCommand, RowsEqualThoseOfRender) {
   EXPECT_EQ(listFiles(folder / "out").size(), 2U + 2 * (1 + 4)) << "folder and four files per row";
 }
 
-TEST_F(BatchCommand, FailedRowsDoNotEndTheOthers) {
+TEST_F(BatchCommand, FailedRowsDoNotAffectOthers) {
   folder.write("torn.nrrd", NrrdText().encode("x"));
   folder.write("t.csv", "name,input,focus\na,torn.nrrd,\nb,nowhere.nrrd,\nc,volume.nrrd,7\n"
                         "d,volume.nrrd,\n");
@@ -179,7 +179,7 @@ TEST_F(BatchCommand, ALongRowResumesFromItsCheckpoint) {
   ASSERT_TRUE(fs::exists(folder / "out/a/a.film"));
   ASSERT_FALSE(fs::exists(folder / "out/a/a.png"));
   fs::copy(folder / "out", folder / "other", fs::copy_options::recursive);
-  const auto pathsFromFilm = [&](const std::string& output, const std::string& samples) {
+  const auto countResumedPaths = [&](const std::string& output, const std::string& samples) {
     const Outcome outcome = run(arguments(output, samples), folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
@@ -187,13 +187,13 @@ TEST_F(BatchCommand, ALongRowResumesFromItsCheckpoint) {
     EXPECT_EQ(listFiles(folder / output / "a").size(), 4U) << "unexpected files remain";
     return nlohmann::json::parse(readBytes(folder / output / "a/a.json")).value("pathsFromFilm", 0);
   };
-  EXPECT_GT(pathsFromFilm("out", "300"), 0);
+  EXPECT_GT(countResumedPaths("out", "300"), 0);
   ASSERT_EQ(run({"volume.nrrd", "--size", "96x96", "--samples", "300", "--output", "alone.exr"},
                 folder.path())
                 .status,
             0);
   EXPECT_EQ(readImage(folder / "out/a/a.exr").channels, readImage(folder / "alone.exr").channels);
-  EXPECT_EQ(pathsFromFilm("other", "1"), 0) << "a checkpoint with other options was used";
+  EXPECT_EQ(countResumedPaths("other", "1"), 0) << "a checkpoint with other options was used";
 }
 
 TEST_F(BatchCommand, ARowWithAnUnusableCheckpointStartsOver) {

@@ -101,8 +101,8 @@ TEST_F(DescribeCommand, ManualPageHasAllSectionsAndOptions) {
        {"render", "inspect", "turntable", "serve", "compare", "phantom", "describe"}) {
     EXPECT_NE(outcome.out.find(std::string("\n.It Nm Cm ") + command + " Ar "), std::string::npos);
     const std::string help = run({command, "--help"}, folder.path()).out;
-    static const std::regex flag("\n  --([a-z]+)");
-    for (std::sregex_iterator it(help.begin(), help.end(), flag), end; it != end; ++it)
+    static const std::regex option("\n  --([a-z]+)");
+    for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it)
       EXPECT_TRUE(std::regex_search(outcome.out, std::regex("\n.It Fl Fl " + it->str(1) + "[ \n]")))
           << command << " " << it->str(1);
   }
@@ -110,11 +110,11 @@ TEST_F(DescribeCommand, ManualPageHasAllSectionsAndOptions) {
 
 TEST_F(DescribeCommand, HelpOmitsUnsupportedOptions) {
   using Pair = std::pair<const char*, const char*>;
-  for (const auto& [command, flag] :
+  for (const auto& [command, option] :
        {Pair("serve", "--stats"), Pair("serve", "--checkpoint"), Pair("turntable", "--surface"),
         Pair("turntable", "--checkpoint")}) {
-    expectErrors({{flag, {command, "volume.nrrd", flag, "a.json"}, 2, flag}}, folder.path());
-    EXPECT_EQ(run({command, "--help"}, folder.path()).out.find(concat("\n  ", flag, " ")),
+    expectErrors({{option, {command, "volume.nrrd", option, "a.json"}, 2, option}}, folder.path());
+    EXPECT_EQ(run({command, "--help"}, folder.path()).out.find(concat("\n  ", option, " ")),
               std::string::npos);
   }
   EXPECT_NE(run({"render", "--help"}, folder.path()).out.find("\n  --checkpoint "),

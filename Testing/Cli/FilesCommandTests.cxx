@@ -16,10 +16,10 @@ TEST_F(FilesCommand, RejectsInputThatIsNotAVolume) {
   folder.write(".nrrd", NrrdText().encode(makeRamp()));
   folder.write("a.seg.vtm", "<VTKFile/>");
   folder.write("empty.nrrd", "");
-  folder.write("picture.nrrd", "\x89PNG\r\n\x1a\n0000");
-  folder.write("picture.png", "\x89PNG\r\n\x1a\n0000");
+  folder.write("image.nrrd", "\x89PNG\r\n\x1a\n0000");
+  folder.write("image.png", "\x89PNG\r\n\x1a\n0000");
   folder.write("flat.nrrd", NrrdText{"8 8"}.encode(makeRamp()));
-  folder.write("film.nrrd", NrrdText{"4 4 2 2"}.encode(makeRamp()));
+  folder.write("frames.nrrd", NrrdText{"4 4 2 2"}.encode(makeRamp()));
   folder.write("none.nrrd", NrrdText{"0 4 4"}.encode(""));
   folder.write("negative.nrrd", NrrdText{"-4 4 4"}.encode(makeRamp()));
   expectErrors(
@@ -35,12 +35,12 @@ TEST_F(FilesCommand, RejectsInputThatIsNotAVolume) {
           {"unknown extension", {"text.txt"}, 3, "has an unknown extension; give a .nrrd"},
           {"an empty file", {"empty.nrrd"}, 3, "empty.nrrd: is not a NRRD file"},
           {"a PNG called NRRD",
-           {"picture.nrrd", "--output", "p.png"},
+           {"image.nrrd", "--output", "p.png"},
            3,
-           "picture.nrrd: is not a NRRD file"},
-          {"a PNG", {"picture.png"}, 3, "picture.png: has an unknown extension"},
+           "image.nrrd: is not a NRRD file"},
+          {"a PNG", {"image.png"}, 3, "image.png: has an unknown extension"},
           {"two axes", {"flat.nrrd"}, 3, "flat.nrrd: is an image of 2 axes"},
-          {"four axes", {"film.nrrd"}, 3, "film.nrrd: has 4 axes"},
+          {"four axes", {"frames.nrrd"}, 3, "frames.nrrd: has 4 axes"},
           {"no voxels", {"none.nrrd"}, 3, "none.nrrd: sizes: "},
           {"negative size", {"negative.nrrd"}, 3, "negative.nrrd: sizes: "},
       },
@@ -113,8 +113,8 @@ TEST_F(FilesCommand, RejectsMissingOrDamagedAppearance) {
   folder.write("hybrid.json", R"({"extinction": [[0, 0], [9, 1]], )" + albedo + R"("hybrid"})");
   folder.write("thick.json", R"({"extinction": [[0, 0], [9, 1e20]], )" + albedo + R"("volume"})");
   folder.write("constant.nrrd", NrrdText().encode(std::string(128, '\1')));
-  const auto makeArguments = [](const std::string& flag, const std::string& value) {
-    return Arguments{"volume.nrrd", flag, value};
+  const auto makeArguments = [](const std::string& option, const std::string& value) {
+    return Arguments{"volume.nrrd", option, value};
   };
   expectErrors(
       {
@@ -166,8 +166,8 @@ TEST_F(FilesCommand, ErrorNamesAnUnreadablePathAndTheCause) {
   folder.write("s.mrml", R"(<MRML><Volume id="v" references="storage:s;"/>)"
                          R"(<VolumeArchetypeStorage id="s" fileName="loop/a.nrrd"/></MRML>)");
   const std::string reason = ": cannot be read: Too many levels of symbolic links; its symbolic";
-  const auto makeArguments = [](const std::string& flag, const std::string& value) {
-    return Arguments{"volume.nrrd", flag, value};
+  const auto makeArguments = [](const std::string& option, const std::string& value) {
+    return Arguments{"volume.nrrd", option, value};
   };
   expectErrors(
       {
@@ -198,17 +198,17 @@ TEST_F(FilesCommand, AbsolutePathsWorkInADeletedFolder) {
   const auto runInDeletedFolder = [&](const std::string& arguments) {
     return std::system(("cd " + folderPath + "/gone && rmdir " + folderPath + "/gone && " +
                         FENESTRA_EXECUTABLE + " " + arguments + " --samples 1 --size 8x8 2>" +
-                        folderPath + "/said >&2; status=$?; mkdir -p " + folderPath +
+                        folderPath + "/stderr.txt >&2; status=$?; mkdir -p " + folderPath +
                         "/gone; exit $status")
                            .c_str()) >>
            8;
   };
   EXPECT_EQ(runInDeletedFolder(folderPath + "/volume.nrrd --output " + folderPath + "/a.png"), 0)
-      << readBytes(folder / "said");
+      << readBytes(folder / "stderr.txt");
   EXPECT_EQ(runInDeletedFolder(folderPath + "/volume.nrrd"), 4);
-  EXPECT_NE(readBytes(folder / "said").find("volume.png: cannot be written: No such file"),
+  EXPECT_NE(readBytes(folder / "stderr.txt").find("volume.png: cannot be written: No such file"),
             std::string::npos)
-      << readBytes(folder / "said");
+      << readBytes(folder / "stderr.txt");
 }
 
 TEST_F(FilesCommand, RejectsUnwritableOutputs) {

@@ -36,7 +36,7 @@ protected:
     folder.write("scene.mrml", "<MRML version=\"Slicer 5.6.2 32448\">" + nodes + "</MRML>");
   }
 
-  /// JSON of an inspection that must succeed. Also keeps the plain output in `text`.
+  /// JSON of an inspection that must succeed. Stores the plain output in `text`.
   Json inspect(Arguments arguments) const {
     arguments.insert(arguments.begin(), "inspect");
     text = run(arguments, folder.path()).out;
@@ -48,10 +48,10 @@ protected:
     return Json::parse(outcome.out, nullptr, false);
   }
 
-  Json inspectScene(const std::string& nodes, const Arguments& flags = {}) const {
+  Json inspectScene(const std::string& nodes, const Arguments& options = {}) const {
     writeScene(nodes);
     Arguments arguments = {"scene.mrml"};
-    arguments.insert(arguments.end(), flags.begin(), flags.end());
+    arguments.insert(arguments.end(), options.begin(), options.end());
     return inspect(arguments);
   }
 

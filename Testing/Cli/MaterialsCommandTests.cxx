@@ -209,7 +209,7 @@ TEST_F(MaterialsCommand, DensityAndClippingCanBeSetPerSegment) {
 }
 
 TEST_F(MaterialsCommand, ErrorsAreOneLine) {
-  folder.write("broken.json", R"({"version": 1, "materials": {"a": {"colour": "#ffffff"}}})");
+  folder.write("broken.json", R"({"version": 1, "materials": {"a": {"colors": "#ffffff"}}})");
   const auto refusal = [](Arguments more, int status, const std::string& text) {
     return ExpectedError{text, makeArguments(more), status, text};
   };
@@ -233,9 +233,9 @@ TEST_F(MaterialsCommand, ErrorsAreOneLine) {
                   "liver: no such file or preset; --materials takes none, "
                   "auto, library, or a file"),
           refusal({"--materials", "broken.json"}, 3,
-                  "broken.json: materials.a: unknown key \"colour\""),
+                  "broken.json: materials.a: unknown key \"colors\""),
           change("A", "must give a segment and what to change"),
-          change("A: colour=#ffffff", "--material A: unknown key \"colour\""),
+          change("A: colors=#ffffff", "--material A: unknown key \"colors\""),
           change("A: color=red", "--material A: color"),
           change("C: color=#ffffff", "has no segment \"C\"; it has A (Bone, left), B (Void)"),
       },

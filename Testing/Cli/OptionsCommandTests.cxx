@@ -11,12 +11,12 @@ namespace {
 class OptionsCommand : public SmallScene {
 protected:
   /// Usage error of `fenestra volume.nrrd …` with these options.
-  static ExpectedError refusal(Arguments flags, const std::string& text) {
+  static ExpectedError refusal(Arguments options, const std::string& text) {
     std::string name;
-    for (const std::string& flag : flags)
-      name += flag + " ";
-    flags.insert(flags.begin(), "volume.nrrd");
-    return {name, flags, 2, text};
+    for (const std::string& option : options)
+      name += option + " ";
+    options.insert(options.begin(), "volume.nrrd");
+    return {name, options, 2, text};
   }
 };
 
@@ -65,15 +65,15 @@ TEST_F(OptionsCommand, RejectsMissingAndRepeatedValues) {
 
 TEST_F(OptionsCommand, RejectsNumbersOutOfRange) {
   std::vector<ExpectedError> refusals;
-  const auto refuseAll = [&](const std::string& flag, const Arguments& values) {
+  const auto refuseAll = [&](const std::string& option, const Arguments& values) {
     for (const std::string& value : values)
-      refusals.push_back(refusal({flag, value}, flag + ": "));
+      refusals.push_back(refusal({option, value}, option + ": "));
   };
   const Arguments noNumbers = {"nan", "inf", "-inf", "", "many", "1e999", "0x10", "1,5"};
-  for (const char* flag :
+  for (const char* option :
        {"--samples", "--seed", "--bounces", "--threads", "--controlpoints", "--seconds", "--noise",
         "--scale", "--smoothing", "--shift", "--density"})
-    refuseAll(flag, noNumbers);
+    refuseAll(option, noNumbers);
   refuseAll("--samples", {"0", "-1", "1.5", "99999999999999999999"});
   refuseAll("--seed", {"-1", "18446744073709551616"});
   refuseAll("--bounces", {"-1", "0.5"});
@@ -84,8 +84,8 @@ TEST_F(OptionsCommand, RejectsNumbersOutOfRange) {
   refuseAll("--scale", {"0", "-1", "1e10"});
   refuseAll("--smoothing", {"-0.1", "1.1"});
   refuseAll("--density", {"-1", "1001"});
-  for (const char* flag : {"--position", "--target", "--up"})
-    refuseAll(flag, {"1,2", "1,2,3,4", "1,2,nan", "1,2,inf", "a,b,c", "1,,3", ""});
+  for (const char* option : {"--position", "--target", "--up"})
+    refuseAll(option, {"1,2", "1,2,3,4", "1,2,nan", "1,2,inf", "a,b,c", "1,,3", ""});
   refuseAll("--environment", {"1,2", "-1,0,0", "1,2,nan", "1e300,0,0", "sky.hdr"});
   refuseAll("--background", {"1,2", "0,0,-1", "1,2,nan", "blue"});
   refuseAll("--exposure", {"17", "-16.5", "nan", "1,2", "bright"});
@@ -123,16 +123,16 @@ TEST_F(OptionsCommand, RejectsUnknownWords) {
           refusal({"--clip", "drill"},
                   "--clip: expected auto, none, plane, hole, cutaway, ghost or surface, got"),
           refusal({"--progress", "dots"}, "--progress: expected auto, bar, xml or none, got"),
-          refusal({"--layers", "colour", "--output", "a.exr"}, "--layers: 'colour' is unknown"),
+          refusal({"--layers", "colors", "--output", "a.exr"}, "--layers: 'colors' is unknown"),
       },
       folder.path());
 }
 
 TEST_F(OptionsCommand, RejectsContradictions) {
-  const auto withFocus = [](Arguments flags, const std::string& text) {
+  const auto withFocus = [](Arguments options, const std::string& text) {
     const Arguments focus = {"--segmentation", "segments.seg.nrrd", "--focus", "A"};
-    flags.insert(flags.begin(), focus.begin(), focus.end());
-    return refusal(flags, text);
+    options.insert(options.begin(), focus.begin(), focus.end());
+    return refusal(options, text);
   };
   expectErrors(
       {
@@ -165,7 +165,7 @@ TEST_F(OptionsCommand, RejectsContradictions) {
           refusal({"--labelsmoothing", "1"}, "--labelsmoothing: requires a focus or materials"),
           refusal({"--contextdensity", "0.5"}, "--contextdensity: requires a focus"),
           refusal({"--contextsaturation", "0.5"}, "--contextsaturation: requires a focus"),
-          withFocus({"--margin", "1,2,3"}, "--margin: give one value for all segments of --focus"),
+          withFocus({"--margin", "1,2,3"}, "--margin: has 3 values; give one for all segments"),
           withFocus({"--margin", "1,x"}, "--margin: "),
           withFocus({"--margin", "2000"}, "--margin: must be from -1000 to 1000 mm"),
           refusal({"--surface", "a.vtp"}, "--surface: not available with --clip none and plane"),

@@ -58,11 +58,11 @@ TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
 
   Arguments written = {"--focus", "FemoralCartilage,TibialCartilage"};
   for (const std::string& line : lines)
-    for (const char* flag :
+    for (const char* option :
          {"materials", "transfer", "lights", "view", "clip", "boundary", "labelsmoothing", "soft"})
-      if (line.starts_with(std::string(flag) + ": "))
+      if (line.starts_with(std::string(option) + ": "))
         written.insert(written.end(),
-                       {std::string("--") + flag, line.substr(std::string(flag).size() + 2)});
+                       {std::string("--") + option, line.substr(std::string(option).size() + 2)});
   EXPECT_GE(written.size(), 16u);
   ASSERT_EQ(renderKnee(withSegments(written)).status, 0);
   EXPECT_EQ(readResult().channels, byPreset.channels);
@@ -180,9 +180,9 @@ TEST(PresetsCommand, RejectsUnknownAndDamagedPresets) {
 TEST(PresetsCommand, GivenPresetOverridesOptionsStoredInTheScene) {
   const TemporaryFolder& folder = kneeFolder();
   const std::string scene = readBytes(folder / "knee/knee.mrml");
-  const auto writeStored = [&](const std::string& flags) {
+  const auto writeStored = [&](const std::string& attributes) {
     std::string text = scene;
-    text.insert(text.find("</MRML>"), "<FenestraRender id=\"f1\" " + flags + "/>");
+    text.insert(text.find("</MRML>"), "<FenestraRender id=\"f1\" " + attributes + "/>");
     folder.write("knee/stored.mrml", text);
     return std::string("knee/stored.mrml");
   };

@@ -43,7 +43,7 @@ std::string readContent(int file) {
 
 } // namespace
 
-Process::Process(const Arguments& arguments, const std::filesystem::path& folder, Reader reader)
+Process::Process(const Arguments& arguments, const std::filesystem::path& folder, Stdout target)
     : m_out(::memfd_create("out", MFD_CLOEXEC)), m_err(::memfd_create("err", MFD_CLOEXEC)) {
   int in[2], unread[2];
   if (m_out < 0 || m_err < 0 || ::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(unread, O_CLOEXEC) != 0)
@@ -54,8 +54,8 @@ Process::Process(const Arguments& arguments, const std::filesystem::path& folder
     throw std::runtime_error("cannot start a process");
   if (m_id == 0)
     execProgram(arguments, folder, in[0],
-                reader == Reader::test         ? m_out
-                : reader == Reader::closedPipe ? unread[1]
+                target == Stdout::file         ? m_out
+                : target == Stdout::closedPipe ? unread[1]
                                                : ::open("/dev/full", O_WRONLY),
                 m_err);
   ::close(in[0]);

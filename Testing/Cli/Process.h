@@ -18,15 +18,15 @@ struct Outcome {
   double seconds = 0.0; ///< wall-clock time of wait()
 };
 
-/// Destination of a process's standard output: a file that the test reads, a pipe without a reader,
-/// or a device on which every write fails for lack of space.
-enum class Reader { test, closedPipe, fullDisk };
+/// Target of a process's standard output: a file that the test reads, a pipe without a reader, or a
+/// device on which every write fails for lack of space.
+enum class Stdout { file, closedPipe, fullDisk };
 
 /// Process `fenestra arguments…` in `folder`. The constructor starts it, the destructor kills it.
 class Process {
 public:
   Process(const Arguments& arguments, const std::filesystem::path& folder,
-          Reader reader = Reader::test);
+          Stdout target = Stdout::file);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;

@@ -8,9 +8,9 @@ namespace {
 class ProgressCommand : public SmallScene {
 protected:
   /// Renders for half a second, which is enough for several reports.
-  Outcome renderWithProgress(const Arguments& flags) const {
+  Outcome renderWithProgress(const Arguments& options) const {
     Arguments all = {"volume.nrrd", "--size", "32x32", "--seconds", "0.5"};
-    all.insert(all.end(), flags.begin(), flags.end());
+    all.insert(all.end(), options.begin(), options.end());
     return run(all, folder.path());
   }
 };
@@ -24,9 +24,9 @@ std::vector<double> parseFractions(const std::string& text) {
 }
 
 TEST_F(ProgressCommand, XmlWritesSlicerTagsToStandardOutput) {
-  for (const Arguments& flags : {Arguments{}, {"--noise", "0.05"}}) {
+  for (const Arguments& options : {Arguments{}, {"--noise", "0.05"}}) {
     Arguments all = {"--progress", "xml"};
-    all.insert(all.end(), flags.begin(), flags.end());
+    all.insert(all.end(), options.begin(), options.end());
     const Outcome outcome = renderWithProgress(all);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");

@@ -14,11 +14,11 @@ class RenderCommand : public SmallScene {
 protected:
   Image render(const Arguments& arguments) const {
     Arguments all = arguments;
-    all.insert(all.end(), {"--output", "picture.exr"});
+    all.insert(all.end(), {"--output", "image.exr"});
     const Outcome outcome = renderVolume(all);
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
-    return readImage(folder / "picture.exr");
+    return readImage(folder / "image.exr");
   }
 
   nlohmann::json stats(const std::string& name) const {
@@ -86,16 +86,16 @@ TEST_F(RenderCommand, ExposureAndToneChangeOnlyDisplayImages) {
   };
   const auto file = [&](const std::string& name) { return readBytes(folder / name); };
   const auto raw = renderChannels({}, "a");
-  for (const auto& [flag, value, headerText] :
+  for (const auto& [option, value, headerText] :
        {std::array{"--exposure", "2", "tone film, exposure 2 EV"},
         std::array{"--tone", "photographic", "tone photographic, exposure 0 EV"}}) {
-    EXPECT_EQ(renderChannels({flag, value}, "b"), raw) << flag;
+    EXPECT_EQ(renderChannels({option, value}, "b"), raw) << option;
     for (const std::string part : {".nrrd", "-Z.nrrd", "-denoised.nrrd"})
-      EXPECT_EQ(file("a" + part), file("b" + part)) << flag << part;
+      EXPECT_EQ(file("a" + part), file("b" + part)) << option << part;
     for (const std::string kind : {".png", ".tif"}) {
       EXPECT_NE(readImage(folder / ("a" + kind)).channels,
                 readImage(folder / ("b" + kind)).channels)
-          << flag << kind;
+          << option << kind;
       EXPECT_NE(file("b" + kind).find(headerText), std::string::npos) << kind;
     }
   }
@@ -149,7 +149,7 @@ TEST_F(RenderCommand, WritesRequestedLayersAndTheHeader) {
   EXPECT_EQ(all.header.at("sampling"), "stratified");
   EXPECT_EQ(all.header.at("samples"), "2");
   EXPECT_EQ(all.header.at("command"),
-            "fenestra volume.nrrd --size 16x16 --samples 2 --output picture.exr");
+            "fenestra volume.nrrd --size 16x16 --samples 2 --output image.exr");
   for (const char* key : {"version", "target", "camera"})
     EXPECT_FALSE(all.header.at(key).empty()) << key;
 
@@ -200,7 +200,7 @@ TEST_F(RenderCommand, StatsCountOnlyRequiredFilesAndRays) {
 TEST_F(RenderCommand, LightsAsFileOrInlineJsonGiveTheSameImage) {
   render({"--background", "1,2,3"});
   std::filesystem::create_directory(folder / "maps");
-  std::filesystem::rename(folder / "picture.exr", folder / "maps/sky.exr");
+  std::filesystem::rename(folder / "image.exr", folder / "maps/sky.exr");
   const std::string text = R"({"lights": [{"type": "environment", "file": "maps/sky.exr"},
     {"type": "rectangle", "frame": "camera", "center": [-1.5, 1.7, 2.4], "normal": [1.5, -1.7, -2],
      "up": [0, 1, 0], "size": [1.4, 1.4], "radiance": [15, 10, 5]}]})";
@@ -292,9 +292,9 @@ TEST_F(RenderCommand, StatsHaveEveryDocumentedKey) {
 
 TEST_F(RenderCommand, NegativeNumbersAreValuesNotOptions) {
   const Image joined = render({"--position=-1,20,3", "--shift=-5"});
-  const Image apart = render({"--position", "-1,20,3", "--shift", "-5"});
+  const Image separate = render({"--position", "-1,20,3", "--shift", "-5"});
   const Image bare = render({"--position", "-1.0,20,3.", "--shift", "-.5e1"});
-  EXPECT_EQ(joined.channels, apart.channels);
+  EXPECT_EQ(joined.channels, separate.channels);
   EXPECT_EQ(joined.channels, bare.channels);
   EXPECT_NE(joined.header.at("camera").find("--position=-1,20,3 "), std::string::npos)
       << joined.header.at("camera");

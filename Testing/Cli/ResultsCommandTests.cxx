@@ -56,7 +56,7 @@ TEST_F(ResultsCommand, FullStandardOutputIsAnOutputError) {
            {"--xml"},
            {"inspect", "volume.nrrd"},
            {"volume.nrrd", "--size", "8x8", "--samples", "1", "--output", "a.png"}}) {
-    const Outcome outcome = Process(arguments, folder.path(), Reader::fullDisk).wait();
+    const Outcome outcome = Process(arguments, folder.path(), Stdout::fullDisk).wait();
     EXPECT_EQ(outcome.status, 4) << arguments.front();
     EXPECT_TRUE(outcome.err.starts_with("fenestra: standard output: cannot be written"))
         << outcome.err;
@@ -66,15 +66,15 @@ TEST_F(ResultsCommand, FullStandardOutputIsAnOutputError) {
 
 TEST_F(ResultsCommand, PathsInTheHeaderAreRelativeToTheImage) {
   std::filesystem::create_directories(folder / "Doe^John_19501231/dicom");
-  std::filesystem::create_directory(folder / "Doe^John_19501231/pictures");
+  std::filesystem::create_directory(folder / "Doe^John_19501231/images");
   std::filesystem::rename(folder / "volume.nrrd", folder / "Doe^John_19501231/dicom/volume.nrrd");
   const std::string patient = (folder / "Doe^John_19501231").string();
   const Outcome outcome =
       run({patient + "/dicom/volume.nrrd", "--size", "8x8", "--samples=1",
-           "--output=" + patient + "/pictures/a.exr", "--stats", patient + "/pictures/a.json"},
+           "--output=" + patient + "/images/a.exr", "--stats", patient + "/images/a.json"},
           folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const std::filesystem::path images = folder / "Doe^John_19501231/pictures";
+  const std::filesystem::path images = folder / "Doe^John_19501231/images";
   EXPECT_EQ(readImage(images / "a.exr").header.at("command"),
             "fenestra ../dicom/volume.nrrd --size 8x8 --samples=1 --output=a.exr --stats a.json");
   EXPECT_EQ(nlohmann::json::parse(readBytes(images / "a.json"))["filesRead"],

@@ -254,9 +254,9 @@ TEST_F(ScenesCommand, StoredOptionsReproduceTheImage) {
         output="elsewhere.png" threads="one"/>)");
   folder.write("plain.mrml", plain);
   folder.write("stored.mrml", stored);
-  const auto renderChannels = [&](const std::string& input, const Arguments& flags) {
+  const auto renderChannels = [&](const std::string& input, const Arguments& options) {
     Arguments all = {input, "--output", "a.exr"};
-    all.insert(all.end(), flags.begin(), flags.end());
+    all.insert(all.end(), options.begin(), options.end());
     const Outcome outcome = run(all, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return readImage(folder / "a.exr").channels;
@@ -266,9 +266,9 @@ TEST_F(ScenesCommand, StoredOptionsReproduceTheImage) {
       "--seed",    "9",
       "--density", "2",
       "--lights",  R"({"lights": [{"type": "environment", "radiance": [1, 2, 1]}]})"};
-  const auto with = [&](Arguments flags) {
-    flags.insert(flags.end(), appearance.begin(), appearance.end());
-    return flags;
+  const auto with = [&](Arguments options) {
+    options.insert(options.end(), appearance.begin(), appearance.end());
+    return options;
   };
   const Arguments focus = {"--segmentation", "s", "--focus", "A", "--clip", "cutaway"};
   const Arguments camera = {"--position", "3,-30,6", "--target", "2,-2,1",

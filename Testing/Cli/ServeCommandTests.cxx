@@ -41,14 +41,14 @@ protected:
   }
 
   /// Image of `fenestra volume.nrrd …` with these options.
-  Image renderImage(const Arguments& flags) const {
+  Image renderImage(const Arguments& options) const {
     Arguments all = {"volume.nrrd", "--size", "16x16", "--samples", "4", "--output", "b.exr"};
-    all.insert(all.end(), flags.begin(), flags.end());
+    all.insert(all.end(), options.begin(), options.end());
     EXPECT_EQ(run(all, folder.path()).status, 0);
     return readImage(folder / "b.exr");
   }
-  void expectImage(const Arguments& flags) const {
-    EXPECT_EQ(readImage(folder / "a.exr").channels, renderImage(flags).channels);
+  void expectImage(const Arguments& options) const {
+    EXPECT_EQ(readImage(folder / "a.exr").channels, renderImage(options).channels);
   }
 };
 
@@ -78,12 +78,12 @@ TEST_F(ServeCommand, ImagesEqualThoseOfRender) {
     std::replace(line.begin(), line.end(), '\n', ' ');
     process.write(line + "\n");
     ASSERT_TRUE(waitForImage(process, std::to_string(i + 1))) << process.output();
-    Arguments flags = changes[i].second;
-    if (std::find(flags.begin(), flags.end(), "8x8") != flags.end()) {
+    Arguments options = changes[i].second;
+    if (std::find(options.begin(), options.end(), "8x8") != options.end()) {
       EXPECT_EQ(readImage(folder / "a.exr").width, 8);
       continue;
     }
-    expectImage(flags);
+    expectImage(options);
   }
   process.closeInput();
   const Outcome outcome = process.wait();
@@ -179,8 +179,8 @@ TEST_F(ServeCommand, GoodLinesAroundABadOneApply) {
 }
 
 TEST_F(ServeCommand, ChangedViewEndsWithTheDenoisedImageOfRender) {
-  const Arguments flags = {"volume.nrrd", "--size", "32x32", "--samples", "8", "--output"};
-  Arguments arguments = flags;
+  const Arguments options = {"volume.nrrd", "--size", "32x32", "--samples", "8", "--output"};
+  Arguments arguments = options;
   arguments.insert(arguments.begin(), "serve");
   arguments.emplace_back("a.png");
   Process process(arguments, folder.path());
@@ -190,7 +190,7 @@ TEST_F(ServeCommand, ChangedViewEndsWithTheDenoisedImageOfRender) {
   ASSERT_TRUE(waitForImage(process, "1")) << process.output();
   for (const json& event : readEvents(process))
     EXPECT_EQ(event.value("noiseFiltered", 0.0) > 0.0, event["samples"] > 1) << event;
-  Arguments render = flags;
+  Arguments render = options;
   render.insert(render.end(), {"b.png", "--position", "5,60,9"});
   ASSERT_EQ(run(render, folder.path()).status, 0);
   EXPECT_EQ(readBytes(folder / "a.png"), readBytes(folder / "b.png"));
@@ -237,7 +237,7 @@ TEST_F(ServeCommand, SignalEndsWithStatus5) {
 }
 
 TEST_F(ServeCommand, ClosedOutputEndsWithStatus4) {
-  Process process(makeArguments(), folder.path(), Reader::closedPipe);
+  Process process(makeArguments(), folder.path(), Stdout::closedPipe);
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 4);
   EXPECT_NE(outcome.err.find("standard output was closed"), std::string::npos) << outcome.err;

@@ -144,7 +144,7 @@ TEST_F(BrokenPipe, EndsTheRenderWithStatus4) {
   const auto before = listFiles(folder.path());
   Process process({"volume.nrrd", "--size", "64x64", "--samples", "1000000", "--seconds", "20",
                    "--progress", "xml", "--output", "a.png"},
-                  folder.path(), Reader::closedPipe);
+                  folder.path(), Stdout::closedPipe);
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 4) << outcome.err;
   EXPECT_LT(outcome.seconds, 10 * timeLimit);

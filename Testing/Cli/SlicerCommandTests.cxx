@@ -79,13 +79,13 @@ void checkParameter(const pugi::xml_node& parameter, Names& known) {
   ASSERT_TRUE(allowedAttributes.contains(type)) << type << " " << name;
   for (const pugi::xml_attribute& attribute : parameter.attributes())
     EXPECT_TRUE(allowedAttributes.at(type).contains(attribute.name())) << name;
-  Names seen;
+  Names tags;
   for (const pugi::xml_node& child : parameter.children()) {
     EXPECT_TRUE((Names{"name", "longflag", "label", "description", "default", "channel", "index",
                        "constraints", "element"})
                     .contains(child.name()))
         << name << " " << child.name();
-    EXPECT_TRUE(seen.insert(child.name()).second || child.name() == std::string("element")) << name;
+    EXPECT_TRUE(tags.insert(child.name()).second || child.name() == std::string("element")) << name;
   }
   EXPECT_TRUE(std::regex_match(name, identifier)) << name;
   EXPECT_TRUE(known.insert(name).second) << name << " occurs twice";
@@ -122,16 +122,16 @@ protected:
 
   /// The options that Slicer passes if no value in its panel was changed.
   static Arguments makeDefaultArguments(const pugi::xml_document& document) {
-    Arguments flags;
+    Arguments options;
     for (const pugi::xml_node& group : document.child("executable").children("parameters"))
       for (const pugi::xml_node& parameter : group.children()) {
         const std::string start = parameter.child_value("default");
         if (!parameter.child("longflag") || start.empty())
           continue;
-        flags.push_back(std::string("--") + parameter.child_value("longflag"));
-        flags.push_back(start);
+        options.push_back(std::string("--") + parameter.child_value("longflag"));
+        options.push_back(start);
       }
-    return flags;
+    return options;
   }
 };
 
@@ -163,21 +163,21 @@ TEST_F(SlicerCommand, XmlDescribesEveryOptionOfTheHelp) {
   Names described = {
       "help", "version", "xml", "echo", "returnparameterfile", "processinformationaddress"};
   const pugi::xml_document document = description();
-  for (const pugi::xpath_node& flag : document.select_nodes("//longflag"))
-    described.insert(flag.node().text().get());
+  for (const pugi::xpath_node& option : document.select_nodes("//longflag"))
+    described.insert(option.node().text().get());
   const std::string help = run({"--help"}, folder.path()).out;
-  Names helped;
-  static const std::regex flag("\n  --([a-z]+)");
-  for (std::sregex_iterator it(help.begin(), help.end(), flag), end; it != end; ++it)
-    helped.insert((*it)[1]);
-  EXPECT_EQ(described, helped);
+  Names listed;
+  static const std::regex option("\n  --([a-z]+)");
+  for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it)
+    listed.insert((*it)[1]);
+  EXPECT_EQ(described, listed);
 }
 
 TEST_F(SlicerCommand, ReadmeTableEqualsTheXml) {
   std::string table = "| flag | what it does | in Slicer's panel |\n|---|---|---|\n";
   const pugi::xml_document document = description();
-  for (const pugi::xpath_node& flag : document.select_nodes("//parameters/*[longflag]")) {
-    const pugi::xml_node parameter = flag.node();
+  for (const pugi::xpath_node& option : document.select_nodes("//parameters/*[longflag]")) {
+    const pugi::xml_node parameter = option.node();
     const std::string start = parameter.child_value("default");
     table += "| `--" + std::string(parameter.child_value("longflag")) + "` | " +
              parameter.child_value("description") + " | " +
@@ -210,14 +210,14 @@ TEST_F(SlicerCommand, DefaultPanelArgumentsRender) {
     Arguments all = {"--processinformationaddress", "0", "--returnparameterfile", "values.params"};
     all.insert(all.end(), arguments.begin(), arguments.end());
     all.insert(all.end(), more.begin(), more.end());
-    all.insert(all.end(), {"--output", "picture.nrrd", "volume.nrrd"});
+    all.insert(all.end(), {"--output", "image.nrrd", "volume.nrrd"});
     const Outcome outcome = run(all, folder.path());
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     EXPECT_TRUE(outcome.out.starts_with("<filter-start>")) << outcome.out;
     EXPECT_NE(outcome.out.find("<filter-progress>1"), std::string::npos) << outcome.out;
-    EXPECT_TRUE(std::filesystem::exists(folder / "picture.nrrd"));
-    EXPECT_FALSE(std::filesystem::exists(folder / "picture-Z.nrrd")); // Slicer does not expect it
+    EXPECT_TRUE(std::filesystem::exists(folder / "image.nrrd"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "image-Z.nrrd")); // Slicer does not expect it
     const std::string values = readBytes(folder / "values.params");
     EXPECT_TRUE(values.starts_with("samplesPerPixel = 2\n")) << values;
     EXPECT_NE(values.find("\nrenderSeconds = "), std::string::npos) << values;

@@ -36,22 +36,22 @@ protected:
   /// Camera options from a frame's header.
   Arguments readCamera(const std::string& file) const {
     std::istringstream words(readImage(folder / file).header.at("camera"));
-    Arguments flags;
+    Arguments options;
     for (std::string word; words >> word;)
-      flags.push_back(word);
-    return flags;
+      options.push_back(word);
+    return options;
   }
   /// Vector value of one of these options.
-  Vec3 readVector(const std::string& file, const std::string& flag) const {
+  Vec3 readVector(const std::string& file, const std::string& option) const {
     for (const std::string& word : readCamera(file))
-      if (word.starts_with(flag)) {
-        std::istringstream numbers(word.substr(flag.size()));
+      if (word.starts_with(option)) {
+        std::istringstream numbers(word.substr(option.size()));
         Vec3 v;
         char comma = 0;
         numbers >> v.x() >> comma >> v.y() >> comma >> v.z();
         return v;
       }
-    throw std::runtime_error(file + " has no " + flag);
+    throw std::runtime_error(file + " has no " + option);
   }
   /// Unit vector from a frame's target to its camera.
   Vec3 cameraDirection(const std::string& file) const {
@@ -76,10 +76,9 @@ TEST_F(TurntableCommand, FramesEqualThoseOfRender) {
     for (const Arguments& more : {focus, readCamera(frameName(i))})
       arguments.insert(arguments.end(), more.begin(), more.end());
     ASSERT_EQ(renderVolume(arguments).status, 0);
-    const Image single = readImage(folder / "single.exr"),
-                turned = readImage(folder / frameName(i));
-    EXPECT_EQ(single.channels, turned.channels) << i;
-    EXPECT_EQ(single.header.at("camera"), turned.header.at("camera"));
+    const Image single = readImage(folder / "single.exr"), frame = readImage(folder / frameName(i));
+    EXPECT_EQ(single.channels, frame.channels) << i;
+    EXPECT_EQ(single.header.at("camera"), frame.header.at("camera"));
   }
   EXPECT_NE(readImage(folder / frameName(0)).channels, readImage(folder / frameName(1)).channels);
   const auto stats = nlohmann::json::parse(readBytes(folder / "all.json"));
@@ -101,7 +100,7 @@ TEST_F(TurntableCommand, RotatesAroundTheTargetFromTheRequestedView) {
 
 TEST_F(TurntableCommand, RendersOnlyMissingFrames) {
   ASSERT_EQ(runTurntable({"--output", "turn.exr"}).status, 0);
-  const Image lost = readImage(folder / frameName(2));
+  const Image removed = readImage(folder / frameName(2));
   std::map<int, std::filesystem::file_time_type> written;
   for (const int index : {0, 1, 3})
     written[index] = std::filesystem::last_write_time(folder / frameName(index));
@@ -111,15 +110,15 @@ TEST_F(TurntableCommand, RendersOnlyMissingFrames) {
   EXPECT_NE(outcome.out.find("4 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
   for (const auto& [index, when] : written)
     EXPECT_EQ(std::filesystem::last_write_time(folder / frameName(index)), when) << index;
-  EXPECT_EQ(readImage(folder / frameName(2)).channels, lost.channels);
+  EXPECT_EQ(readImage(folder / frameName(2)).channels, removed.channels);
   EXPECT_EQ(readManifest()["finished"].size(), 4U);
 }
 
 /// Without depth, a .nrrd frame is a single file.
 TEST_F(TurntableCommand, ResumesAfterFramesWithoutDepth) {
-  const Arguments flags = {"--output", "turn.nrrd", "--layers", "color"};
-  ASSERT_EQ(runTurntable(flags).status, 0);
-  const Outcome again = runTurntable(flags);
+  const Arguments options = {"--output", "turn.nrrd", "--layers", "color"};
+  ASSERT_EQ(runTurntable(options).status, 0);
+  const Outcome again = runTurntable(options);
   EXPECT_NE(again.out.find("4 of 4 frames, 0 rendered now"), std::string::npos) << again.out;
 }
 
@@ -152,16 +151,17 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionWithIdenticalFrames) {
     EXPECT_EQ(readBytes(folder / frameName(i)), bytes) << i;
   const nlohmann::json resumed = readManifest();
   Arguments complete = arguments;
-  *std::find(complete.begin(), complete.end(), "turn.exr") = "whole.exr";
+  *std::find(complete.begin(), complete.end(), "turn.exr") = "complete.exr";
   ASSERT_EQ(run(complete, folder.path()).status, 0);
   for (int i = 0; i < 4; ++i)
-    EXPECT_EQ(readImage(folder / ("whole_000" + std::to_string(i) + ".exr")).channels,
+    EXPECT_EQ(readImage(folder / ("complete_000" + std::to_string(i) + ".exr")).channels,
               readImage(folder / frameName(i)).channels)
         << i;
   // The files themselves differ, since their headers contain the command.
-  const nlohmann::json atOnce = nlohmann::json::parse(readBytes(folder / "whole.turntable.json"));
+  const nlohmann::json single =
+      nlohmann::json::parse(readBytes(folder / "complete.turntable.json"));
   for (std::size_t i = 0; i < 4; ++i)
-    EXPECT_EQ(atOnce["finished"][i]["surfaceChange"], resumed["finished"][i]["surfaceChange"]);
+    EXPECT_EQ(single["finished"][i]["surfaceChange"], resumed["finished"][i]["surfaceChange"]);
 }
 
 TEST_F(TurntableCommand, RejectsFramesOfAnotherTurntable) {
@@ -354,23 +354,23 @@ TEST_F(TurntableCommand, RejectsManifestMembersOfTheWrongType) {
 }
 
 TEST_F(TurntableCommand, ShardsRenderTheirFramesIntoOneFolder) {
-  const auto turn = [this](const std::string& output, const Arguments& more) {
+  const auto render = [this](const std::string& output, const Arguments& more) {
     Arguments all = {"turntable", "volume.nrrd", "--size", "8x8",      "--samples",
                      "1",         "--frames",    "5",      "--output", output};
     all.insert(all.end(), more.begin(), more.end());
     return run(all, folder.path());
   };
-  ASSERT_EQ(turn("whole.exr", {}).status, 0);
+  ASSERT_EQ(render("complete.exr", {}).status, 0);
   for (const char* part : {"2/3", "1/3", "3/3"}) {
-    const Outcome outcome = turn("part.exr", {"--shard", part});
+    const Outcome outcome = render("part.exr", {"--shard", part});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }
   for (const char* frame : {"0000", "0001", "0002", "0003", "0004"})
-    expectSameImage(folder / ("whole_" + std::string(frame) + ".exr"),
+    expectSameImage(folder / ("complete_" + std::string(frame) + ".exr"),
                     folder / ("part_" + std::string(frame) + ".exr"));
-  const Outcome again = turn("part.exr", {"--shard", "2/3"});
+  const Outcome again = render("part.exr", {"--shard", "2/3"});
   EXPECT_NE(again.out.find("2 of 2 frames, 0 rendered now"), std::string::npos) << again.out;
-  EXPECT_EQ(turn("few.exr", {"--shard", "1/6"}).status, 2);
+  EXPECT_EQ(render("few.exr", {"--shard", "1/6"}).status, 2);
 }
 
 } // namespace

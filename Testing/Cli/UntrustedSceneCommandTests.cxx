@@ -24,16 +24,16 @@ protected:
   }
 
   /// Runs `fenestra scene.mrml … --output NAME`.
-  Outcome render(const std::string& name, const Arguments& flags = {}) const {
+  Outcome render(const std::string& name, const Arguments& options = {}) const {
     Arguments all = {"scene.mrml", "--output", name};
-    all.insert(all.end(), flags.begin(), flags.end());
+    all.insert(all.end(), options.begin(), options.end());
     return run(all, folder.path());
   }
 
   /// Image of the scene without stored options.
-  std::map<std::string, std::vector<float>> renderPlain(const Arguments& flags) const {
+  std::map<std::string, std::vector<float>> renderPlain(const Arguments& options) const {
     writeScene("");
-    EXPECT_EQ(render("plain.exr", flags).status, 0);
+    EXPECT_EQ(render("plain.exr", options).status, 0);
     return readImage(folder / "plain.exr").channels;
   }
 };
@@ -46,14 +46,14 @@ TEST_F(UntrustedSceneCommand, StoredOptionsWriteNoFilesAndRunNoPrograms) {
     xml="1" processinformationaddress="0" INPUT="other.nrrd" frames="3" restart="1" degrees="9"
     json="1" help="1" version="1" program="./program" executable="./program" errora="e.exr")");
   const std::set<std::string> before = listFiles(folder.path());
-  const Outcome outcome = render("picture.exr", {"--progress", "none"});
+  const Outcome outcome = render("image.exr", {"--progress", "none"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
   std::set<std::string> after = listFiles(folder.path());
-  EXPECT_EQ(after.erase("picture.exr"), 1u);
+  EXPECT_EQ(after.erase("image.exr"), 1u);
   EXPECT_EQ(after, before);
-  EXPECT_EQ(readImage(folder / "picture.exr").width, 8);
+  EXPECT_EQ(readImage(folder / "image.exr").width, 8);
 }
 
 /// The files are invalid, so that reading one would fail the render.
@@ -61,7 +61,7 @@ TEST_F(UntrustedSceneCommand, StoredOptionsThatNameFilesAreIgnored) {
   const Arguments small = {"--size", "8x8", "--samples", "1", "--progress", "none"};
   const auto expected = renderPlain(small);
   const std::string secret = folder.write("secret.exr", "confidential").string();
-  for (const auto& [attribute, flag] : std::vector<std::pair<std::string, std::string>>{
+  for (const auto& [attribute, name] : std::vector<std::pair<std::string, std::string>>{
            {"transfer=\"" + secret + "\"", "transfer"},
            {"transfer=\"secret.exr\"", "transfer"},
            {"lights=\"" + secret + "\"", "lights"},
@@ -73,14 +73,14 @@ TEST_F(UntrustedSceneCommand, StoredOptionsThatNameFilesAreIgnored) {
            {"focus=\"A\" clip=\"none\" references=\"segmentation:" + secret + ";\"",
             "segmentation"}}) {
     writeScene(attribute);
-    const Outcome outcome = render("picture.exr", small);
+    const Outcome outcome = render("image.exr", small);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("warning: FenestraRender now (f): " + flag + " "), std::string::npos)
+    EXPECT_NE(outcome.err.find("warning: FenestraRender now (f): " + name + " "), std::string::npos)
         << outcome.err;
-    EXPECT_NE(outcome.err.find("; to use it, add --" + flag), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("; to use it, add --" + name), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.err.find("confidential"), std::string::npos) << outcome.err;
-    if (flag != "segmentation") { // replaced by the scene's segmentation
-      EXPECT_EQ(readImage(folder / "picture.exr").channels, expected) << attribute;
+    if (name != "segmentation") { // replaced by the scene's segmentation
+      EXPECT_EQ(readImage(folder / "image.exr").channels, expected) << attribute;
     }
   }
 }
@@ -90,20 +90,20 @@ TEST_F(UntrustedSceneCommand, StoredNamesAndValuesApply) {
   const Outcome named = render("named.exr", {"--echo"});
   EXPECT_EQ(named.status, 0);
   EXPECT_EQ(named.err, "");
-  for (const char* flag : {"transfer: mr-knee", "lights: headlight", "environment: 1,2,3"})
-    EXPECT_NE(named.out.find(flag), std::string::npos) << named.out;
+  for (const char* option : {"transfer: mr-knee", "lights: headlight", "environment: 1,2,3"})
+    EXPECT_NE(named.out.find(option), std::string::npos) << named.out;
 }
 
 TEST_F(UntrustedSceneCommand, StoredSizeAndSamplesAreLimited) {
   writeScene(R"(size="9000x9000" samples="100000000")");
   const Outcome outcome =
-      render("picture.exr", {"--progress", "none", "--seconds", "0.01", "--bounces", "0"});
+      render("image.exr", {"--progress", "none", "--seconds", "0.01", "--bounces", "0"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("now (f): size "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("add --size 9000x9000"), std::string::npos) << outcome.err;
-  EXPECT_EQ(readImage(folder / "picture.exr").width, 512);
+  EXPECT_EQ(readImage(folder / "image.exr").width, 512);
   writeScene(R"(size="8x8" samples="100000000")");
-  const Outcome fewer = render("picture.exr", {"--progress", "none"});
+  const Outcome fewer = render("image.exr", {"--progress", "none"});
   EXPECT_EQ(fewer.status, 0) << fewer.err;
   EXPECT_NE(fewer.err.find("add --samples 100000000"), std::string::npos) << fewer.err;
 }
@@ -145,7 +145,7 @@ TEST_F(UntrustedSceneCommand, ArchiveReferencesOnlyItsOwnFiles) {
       archive(header(name), asMeta);
       const Outcome outcome = render();
       EXPECT_EQ(outcome.status, 3) << outcome.err;
-      EXPECT_NE(outcome.err.find("outside the archive"), std::string::npos) << outcome.err;
+      EXPECT_NE(outcome.err.find("inside the archive"), std::string::npos) << outcome.err;
     }
   }
 }

@@ -97,17 +97,17 @@ Z
 # The printed script or page must contain every option of every command's help.
 for command in render inspect turntable serve compare phantom describe; do
   "$program" "$command" --help | sed -n 's/^  --\([a-z]*\).*/\1/p'
-done | sort -u >flags
-[ "$(wc -l <flags)" -gt 50 ]
-while read -r flag; do
+done | sort -u >options
+[ "$(wc -l <options)" -gt 50 ]
+while read -r option; do
   case $kind in
-    bash) form=" --$flag[ ']|'--$flag[ ']" ;;
-    zsh) form="--$flag(=|\[)" ;;
-    fish) form=" -l $flag " ;;
-    man) form="^.It Fl Fl $flag( |\$)" ;;
+    bash) form=" --$option[ ']|'--$option[ ']" ;;
+    zsh) form="--$option(=|\[)" ;;
+    fish) form=" -l $option " ;;
+    man) form="^.It Fl Fl $option( |\$)" ;;
   esac
-  grep -qE -- "$form" described || echo "--$flag is missing"
-done <flags >missing
+  grep -qE -- "$form" described || echo "--$option is missing"
+done <options >missing
 if [ "$kind" = man ]; then
   mandoc -Tlint described >>missing || true
   mandoc -Tutf8 described >page || true

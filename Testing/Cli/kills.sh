@@ -39,14 +39,14 @@ kill -9 "$run" 2>/dev/null
 wait "$run" 2>/dev/null
 rm -f out v.*
 
-killed=0 after=0 images=0 wrong=0
-# check: compares the image of a completed run, checks the remaining files, and removes both results.
-check() {
+killed=0 after=0 images=0 errors=0
+# check_results: compares the image of a completed run, checks the remaining files, and removes both results.
+check_results() {
   images=$((images + 1))
-  cmp ../once/v.exr v.exr || wrong=$((wrong + 1))
+  cmp ../once/v.exr v.exr || errors=$((errors + 1))
   if [ "$(ls -A | tr '\n' ' ')" != "v.exr v.film volume.nrrd " ]; then
     echo "unexpected files: $(ls -A | tr '\n' ' ')"
-    wrong=$((wrong + 1))
+    errors=$((errors + 1))
   fi
   rm -f v.exr v.film
 }
@@ -63,13 +63,13 @@ while [ "$killed" -lt "$kills" ] || { [ "$after" -lt "$minimum" ] && [ "$killed"
   status=$?
   rm -f out
   if [ "$status" -eq 0 ]; then
-    check
+    check_results
   elif [ "$status" -ne 137 ]; then
     echo "ended with status $status"
-    wrong=$((wrong + 1))
+    errors=$((errors + 1))
   fi
 done
-"${command[@]}" || wrong=$((wrong + 1))
-check
-echo "$killed kills, $after of them after a checkpoint was written; $images images, $wrong errors"
-[ "$wrong" -eq 0 ] && [ "$after" -ge "$minimum" ]
+"${command[@]}" || errors=$((errors + 1))
+check_results
+echo "$killed kills, $after of them after a checkpoint was written; $images images, $errors errors"
+[ "$errors" -eq 0 ] && [ "$after" -ge "$minimum" ]

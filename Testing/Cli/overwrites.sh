@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Attacks on input files and foreign files: each case names one as an output. Each case runs in a new
-# folder with copies of the test data. The command must fail before it renders: one error line, exit status
-# 2, 3 or 4, nothing on standard output, no new file (`event` cases: an error event of serve). All existing
-# files and links must be unchanged. Prints one table row per failed case; exit status 1 if there is one.
+# Each case names an input file or a foreign file (of another program) as an output, in a new folder with
+# copies of the test data. The command must fail before it renders: one error line, exit status 2, 3 or 4,
+# nothing on standard output, no new file (`event` cases: an error event of serve). All existing files and
+# links must be unchanged. Prints one table row per failed case; exit status 1 if there is one.
 # usage: overwrites.sh FENESTRA [CASE...]
 set -uo pipefail
 export LC_ALL=C
@@ -104,7 +104,7 @@ depth of an image = INPUT            | refused | mv plain.nrrd a-Z.nrrd | render
 depth of an image, foreign           | refused | write_foreign a-Z.nrrd | render plain.nrrd --output a.nrrd
 depth of an image, label map         | refused | cp labels.nrrd a-Z.nrrd | render plain.nrrd --output a.nrrd
 default output, foreign              | refused | write_foreign plain.png | render plain.nrrd
-default output, image without tag    | refused | cp "$corpus/Picture/picture.png" plain.png; sed -i 1s/^.// plain.png | render plain.nrrd
+default output, image without tag    | refused | cp "$corpus/Image/picture.png" plain.png; sed -i 1s/^.// plain.png | render plain.nrrd
 map of --lights                      | refused | echo '{"lights":[{"type":"environment","file":"sky.exr"}]}' >l.json | render plain.nrrd --lights l.json --output sky.exr
 map of --environment                 | refused |  | render plain.nrrd --environment sky.exr --output sky.exr
 file of --lights                     | refused |  | render plain.nrrd --lights lights.json --output o.png --stats lights.json

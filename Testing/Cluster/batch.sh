@@ -17,18 +17,18 @@ cp "$top/Testing/Data/knee/knee.mrb" "$top/Testing/Data/foot/foot.mrb" .
   done
   printf 'torn,nothing.nrrd,,\n'
 } >cases.csv
-flags=(--size 64x64 --samples 4)
+arguments=(--size 64x64 --samples 4)
 
 start_cluster
 script=$top/Resources/cluster/batch.sbatch
 options=(--parsable --cpus-per-task=1)
-array=$(sbatch "${options[@]}" --array=1-4 "$script" cases.csv results "${flags[@]}")
-last=$(sbatch "${options[@]}" --output=%x-%j.log --dependency="afterany:$array" "$script" cases.csv results "${flags[@]}")
+array=$(sbatch "${options[@]}" --array=1-4 "$script" cases.csv results "${arguments[@]}")
+last=$(sbatch "${options[@]}" --output=%x-%j.log --dependency="afterany:$array" "$script" cases.csv results "${arguments[@]}")
 squeue
 wait_for_jobs 300
 print_jobs
 
-"$FENESTRA" batch cases.csv --output alone "${flags[@]}" >alone.log 2>&1 && fail "the row with a missing input did not fail"
+"$FENESTRA" batch cases.csv --output alone "${arguments[@]}" >alone.log 2>&1 && fail "the row with a missing input did not fail"
 for image in alone/*/*.png; do
   cmp "$image" "results/${image#alone/}" || fail "a row of the array job differs: $image"
 done

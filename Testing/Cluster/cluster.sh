@@ -2,7 +2,7 @@
 # begin_test FENESTRA FOLDER empties and enters the folder, or skips the test without Slurm; start_cluster
 # starts the daemons and sets SLURM_CONF. The daemons end with the test.
 
-cluster_ids=()
+daemon_ids=()
 
 # can_run_cluster: status 1 and a reason if Slurm cannot run here.
 can_run_cluster() {
@@ -46,14 +46,14 @@ print_jobs() {
   done
 }
 
-free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
+find_free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
 
-# in_background LOG COMMAND...: starts a daemon, which stop_cluster ends.
-in_background() {
+# start_daemon LOG COMMAND...: starts a daemon, which stop_cluster ends.
+start_daemon() {
   local log=$1
   shift
   "$@" >"$log" 2>&1 &
-  cluster_ids+=($!)
+  daemon_ids+=($!)
 }
 
 start_cluster() {
@@ -67,8 +67,8 @@ start_cluster() {
   cat >"$SLURM_CONF" <<CONF
 ClusterName=fenestra
 SlurmctldHost=$host(127.0.0.1)
-SlurmctldPort=$(free_port)
-SlurmdPort=$(free_port)
+SlurmctldPort=$(find_free_port)
+SlurmdPort=$(find_free_port)
 SlurmUser=root
 AuthType=auth/munge
 AuthInfo=socket=$folder/munge/socket
@@ -92,15 +92,15 @@ ReturnToService=2
 NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
 PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 CONF
-  in_background "$folder/munged.log" munged --foreground --force --key-file="$folder/munge/key" \
+  start_daemon "$folder/munged.log" munged --foreground --force --key-file="$folder/munge/key" \
     --socket="$folder/munge/socket" --pid-file="$folder/munge/pid" --log-file="$folder/munge/log" \
     --seed-file="$folder/munge/seed" --num-threads=2
   until [ -S "$folder/munge/socket" ]; do
-    kill -0 "${cluster_ids[-1]}" || { cat "$folder/munged.log"; return 1; }
+    kill -0 "${daemon_ids[-1]}" || { cat "$folder/munged.log"; return 1; }
     sleep 0.1
   done
-  in_background "$folder/slurmctld.log" slurmctld -D
-  in_background "$folder/slurmd.log" slurmd -D
+  start_daemon "$folder/slurmctld.log" slurmctld -D
+  start_daemon "$folder/slurmd.log" slurmd -D
   local tries
   for tries in $(seq 300); do
     [ "$(sinfo --noheader --format=%T 2>/dev/null)" != idle ] || return 0
@@ -123,9 +123,9 @@ wait_for_jobs() {
 
 stop_cluster() {
   local i
-  for ((i = ${#cluster_ids[@]} - 1; i >= 0; --i)); do
-    kill "${cluster_ids[i]}" 2>/dev/null || true
-    wait "${cluster_ids[i]}" 2>/dev/null || true
+  for ((i = ${#daemon_ids[@]} - 1; i >= 0; --i)); do
+    kill "${daemon_ids[i]}" 2>/dev/null || true
+    wait "${daemon_ids[i]}" 2>/dev/null || true
   done
-  cluster_ids=()
+  daemon_ids=()
 }

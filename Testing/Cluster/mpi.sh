@@ -12,18 +12,18 @@ export FENESTRA_MPI OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 begin_test "$1" "$3"
 
 cp "$top/Testing/Data/knee/knee.mrb" .
-flags=(knee.mrb --focus FemoralCartilage --size 96x96)
+arguments=(knee.mrb --focus FemoralCartilage --size 96x96)
 start_cluster
 options=(--parsable --ntasks=2 --ntasks-per-node=2 --cpus-per-task=1)
 script=$top/Resources/cluster/mpi.sbatch
-samples=$(sbatch "${options[@]}" "$script" "${flags[@]}" --samples 16 --output samples.exr --output samples.png)
-noise=$(sbatch "${options[@]}" "$script" "${flags[@]}" --noise 0.1 --output noise.exr --output noise.png)
+samples=$(sbatch "${options[@]}" "$script" "${arguments[@]}" --samples 16 --output samples.exr --output samples.png)
+noise=$(sbatch "${options[@]}" "$script" "${arguments[@]}" --noise 0.1 --output noise.exr --output noise.png)
 squeue
 wait_for_jobs 300
 print_jobs
 
-"$FENESTRA" "${flags[@]}" --samples 16 --output alone-samples.exr --output alone-samples.png >alone.log 2>&1
-"$FENESTRA" "${flags[@]}" --noise 0.1 --output alone-noise.exr --output alone-noise.png >>alone.log 2>&1
+"$FENESTRA" "${arguments[@]}" --samples 16 --output alone-samples.exr --output alone-samples.png >alone.log 2>&1
+"$FENESTRA" "${arguments[@]}" --noise 0.1 --output alone-noise.exr --output alone-noise.png >>alone.log 2>&1
 for kind in samples noise; do
   cmp "alone-$kind.png" "$kind.png" || fail "the image of job ${!kind} differs"
   "$FENESTRA" compare "$kind.exr" "alone-$kind.exr" | grep -q '^largest  *0$' ||

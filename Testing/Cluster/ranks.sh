@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Images by several MPI ranks must equal those of one process byte for byte, with --samples and with --noise.
-# If a rank is killed, the job must end with its number, and a single process must resume from the checkpoint.
+# If a rank is killed, the job must end and name the rank, and a single process must resume from the checkpoint.
 # --seconds, a signal, different instruction sets and a usage error must end all ranks.
 # usage: ranks.sh FENESTRA FENESTRA_MPI RANKS...; exit status 77: skipped.
 set -euo pipefail
@@ -11,15 +11,15 @@ skip() {
 }
 [ -x "$2" ] || skip "$2 is not built"
 command -v mpirun >/dev/null || skip "mpirun is not installed"
-program=$(realpath "$1") ranked=$(realpath "$2")
+program=$(realpath "$1") program_mpi=$(realpath "$2")
 shift 2
 work=$(mktemp -d "${TMPDIR:-/tmp}/ranks-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-wrong=0
+errors=0
 fail() {
   printf 'ranks.sh: %s\n' "$*"
-  wrong=$((wrong + 1))
+  errors=$((errors + 1))
 }
 
 # run_ranks RANKS COMMAND...: runs a command by mpirun.
@@ -29,8 +29,8 @@ run_ranks() {
   timeout 120 mpirun --oversubscribe --bind-to none -n "$ranks" "$@"
 }
 
-# in_folder NAME: enters a new folder with a volume of 4^3 voxels.
-in_folder() {
+# enter_folder NAME: enters a new folder with a volume of 4^3 voxels.
+enter_folder() {
   mkdir -p "$work/$1"
   cd "$work/$1"
   {
@@ -40,10 +40,10 @@ in_folder() {
   } >volume.nrrd
 }
 
-# find_rank RANK: process id of that rank of the job in the current folder.
+# find_rank RANK: prints the process id of that rank of the job in the current folder.
 find_rank() {
   local id
-  for id in $(pgrep -f "^$ranked " || true); do
+  for id in $(pgrep -f "^$program_mpi " || true); do
     if tr '\0' '\n' <"/proc/$id/environ" 2>/dev/null | grep -qx "OMPI_COMM_WORLD_RANK=$1" &&
       [ "$(readlink "/proc/$id/cwd")" = "$PWD" ]; then
       printf '%s' "$id"
@@ -52,9 +52,9 @@ find_rank() {
   done
 }
 
-# begin COMMAND...: starts two ranks, and waits until their checkpoint exists.
-begin() {
-  run_ranks 2 "$ranked" "$@" >out 2>&1 &
+# start_ranks COMMAND...: starts two ranks, and waits until their checkpoint exists.
+start_ranks() {
+  run_ranks 2 "$program_mpi" "$@" >out 2>&1 &
   run=$!
   local tries
   for tries in $(seq 200); do
@@ -64,8 +64,8 @@ begin() {
   fail "no checkpoint: $(cat out)"
 }
 
-# end_of_run: waits for the job of begin; sets status.
-end_of_run() {
+# wait_for_run: waits for the job of start_ranks; sets status.
+wait_for_run() {
   status=0
   wait "$run" || status=$?
 }
@@ -73,12 +73,12 @@ end_of_run() {
 samples=(volume.nrrd --size 72x64 --samples 20 --threads 1 --progress none --output v.exr --output v.png)
 noise=(volume.nrrd --size 72x64 --noise 0.15 --threads 1 --progress none --output v.exr)
 for kind in samples noise; do
-  declare -n flags=$kind
-  in_folder "$kind-alone"
-  "$program" "${flags[@]}" >out 2>&1 || fail "$(cat out)"
+  declare -n arguments=$kind
+  enter_folder "$kind-alone"
+  "$program" "${arguments[@]}" >out 2>&1 || fail "$(cat out)"
   for ranks in "$@"; do
-    in_folder "$kind-$ranks"
-    run_ranks "$ranks" "$ranked" "${flags[@]}" >out 2>&1 || fail "$kind with $ranks ranks: $(cat out)"
+    enter_folder "$kind-$ranks"
+    run_ranks "$ranks" "$program_mpi" "${arguments[@]}" >out 2>&1 || fail "$kind with $ranks ranks: $(cat out)"
     for file in ../"$kind"-alone/v.*; do
       cmp "$file" "$(basename "$file")" || fail "$kind: $ranks ranks differ from one process"
     done
@@ -86,47 +86,47 @@ for kind in samples noise; do
 done
 
 # Only rank 0 reads files, so the other rank can run in a folder without them.
-in_folder elsewhere
-timeout 120 mpirun --oversubscribe --bind-to none -n 1 "$ranked" "${samples[@]}" : \
-  -n 1 --wdir / "$ranked" "${samples[@]}" >out 2>&1 || fail "files of rank 0: $(cat out)"
+enter_folder elsewhere
+timeout 120 mpirun --oversubscribe --bind-to none -n 1 "$program_mpi" "${samples[@]}" : \
+  -n 1 --wdir / "$program_mpi" "${samples[@]}" >out 2>&1 || fail "files of rank 0: $(cat out)"
 cmp ../samples-alone/v.exr v.exr || fail 'files of rank 0: the image differs'
 
-in_folder seconds
-begun=$SECONDS
-run_ranks 2 "$ranked" volume.nrrd --size 64x64 --seconds 1 --threads 1 --progress none --output v.exr >out 2>&1 ||
+enter_folder seconds
+start=$SECONDS
+run_ranks 2 "$program_mpi" volume.nrrd --size 64x64 --seconds 1 --threads 1 --progress none --output v.exr >out 2>&1 ||
   fail "--seconds: $(cat out)"
-[ $((SECONDS - begun)) -le 20 ] || fail "--seconds 1 took $((SECONDS - begun)) s"
+[ $((SECONDS - start)) -le 20 ] || fail "--seconds 1 took $((SECONDS - start)) s"
 
 long=(volume.nrrd --size 64x64 --samples 250 --threads 1 --progress none --checkpoint v.film --output v.exr)
-in_folder long-alone
+enter_folder long-alone
 "$program" "${long[@]}" >out 2>&1 || fail "$(cat out)"
-in_folder dead
-begin "${long[@]}"
+enter_folder dead
+start_ranks "${long[@]}"
 kill -9 "$(find_rank 1)" || fail 'no rank 1'
-end_of_run
+wait_for_run
 [ "$status" -ne 0 ] || fail 'the job succeeds although rank 1 was killed'
 grep -q 'rank 1 ' out || fail "the output does not name the killed rank: $(cat out)"
 rm -f v.exr
 "$program" "${long[@]}" >out 2>&1 || fail "cannot resume from the checkpoint of the killed job: $(cat out)"
 cmp ../long-alone/v.exr v.exr || fail 'the resumed image differs'
 
-in_folder stopped
-begin "${long[@]}"
+enter_folder stopped
+start_ranks "${long[@]}"
 kill -TERM "$(find_rank 0)" || fail 'no rank 0'
-end_of_run
+wait_for_run
 [ "$status" -eq 5 ] || fail "SIGTERM ends with status $status: $(cat out)"
 [ -e v.exr ] || fail 'no image after SIGTERM'
 
-in_folder refused
+enter_folder refused
 status=0
-timeout 120 mpirun --oversubscribe --bind-to none -n 1 -x FENESTRA_INSTRUCTIONS=SSE4 "$ranked" "${samples[@]}" : \
-  -n 1 -x FENESTRA_INSTRUCTIONS=SCALAR "$ranked" "${samples[@]}" >out 2>&1 || status=$?
+timeout 120 mpirun --oversubscribe --bind-to none -n 1 -x FENESTRA_INSTRUCTIONS=SSE4 "$program_mpi" "${samples[@]}" : \
+  -n 1 -x FENESTRA_INSTRUCTIONS=SCALAR "$program_mpi" "${samples[@]}" >out 2>&1 || status=$?
 { [ "$status" -eq 2 ] && grep -q 'rank 1 is .*, rank 0 is ' out; } ||
   fail "different instruction sets end with status $status: $(cat out)"
 status=0
-run_ranks 2 "$ranked" volume.nrrd --samples none >out 2>&1 || status=$?
+run_ranks 2 "$program_mpi" volume.nrrd --samples none >out 2>&1 || status=$?
 { [ "$status" -eq 2 ] && [ "$(grep -c '^fenestra: ' out)" -eq 1 ]; } ||
   fail "a usage error ends with status $status: $(cat out)"
 
-echo "$wrong errors"
-[ "$wrong" -eq 0 ]
+echo "$errors errors"
+[ "$errors" -eq 0 ]

@@ -23,7 +23,7 @@ struct FileCall {
   unsigned number;
   enum class About { path, descriptor, nothing } about = About::nothing;
   int argument = 0;
-  bool commits = false;
+  bool isChange = false; ///< changes a file or folder
 };
 
 using enum FileCall::About;
@@ -147,9 +147,9 @@ std::span<const sock_filter> fileCallFilter() {
   return filter;
 }
 
-bool isCommitting(const user_regs_struct& registers) {
+bool isChange(const user_regs_struct& registers) {
   const FileCall* call = findCall(registers.orig_rax);
-  return call && call->commits;
+  return call && call->isChange;
 }
 
 std::string describeCall(pid_t thread, const user_regs_struct& registers) {

@@ -16,7 +16,7 @@ namespace fenestra::faults {
 std::span<const sock_filter> fileCallFilter();
 
 /// True for renames, links, unlinks and writes, at which signals are injected.
-bool isCommitting(const user_regs_struct& registers);
+bool isChange(const user_regs_struct& registers);
 
 /// Description such as "openat /dev/shm/x/o.png" of the call that `thread` is about to execute.
 std::string describeCall(pid_t thread, const user_regs_struct& registers);

@@ -119,10 +119,10 @@ void addOptionFiles(std::vector<Target>& targets, const Samples& samples) {
   add("s.vtp", surface, segments, {{"b.vtm", list}});
   for (const char* name : {"picture.exr", "picture.nrrd", "picture.png", "picture.tif"})
     targets.push_back({name,
-                       {{name, samples.readSeed("Picture/" + std::string(name))}},
+                       {{name, samples.readSeed("Image/" + std::string(name))}},
                        false,
                        {"compare", name, name, "--output", "o.png"}});
-  add("sky.exr", samples.readSeed("Picture/picture.exr"), {"--environment", "sky.exr"});
+  add("sky.exr", samples.readSeed("Image/picture.exr"), {"--environment", "sky.exr"});
 }
 
 std::vector<Target> makeTargets(const Samples& samples) {
@@ -160,7 +160,7 @@ Arguments prepare(const Target& target, long number, const Workspace& workspace)
 /// Violation of a run; empty if the file was accepted or correctly rejected.
 std::string findViolation(const Outcome& outcome, const Files& before, const Workspace& workspace) {
   constexpr long maxMemory = 2'000'000; // kB
-  if (outcome.hung)
+  if (outcome.hasTimedOut)
     return "hangs";
   if (outcome.signal != 0)
     return "crashes with signal " + std::to_string(outcome.signal) + " in " +
@@ -169,7 +169,7 @@ std::string findViolation(const Outcome& outcome, const Files& before, const Wor
     return "ends with status " + std::to_string(outcome.status);
   if (outcome.peakKilobytes > maxMemory)
     return "uses more than 2 GB";
-  const std::size_t lines = errorLines(outcome).size();
+  const std::size_t lines = listErrorLines(outcome).size();
   if (lines != (outcome.status == 0 ? 0U : 1U))
     return std::to_string(lines) + " error lines and status " + std::to_string(outcome.status);
   Files after = workspace.files();

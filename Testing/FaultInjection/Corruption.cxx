@@ -65,7 +65,7 @@ constexpr std::string_view extremes[] = {
 };
 
 /// Leading text, before binary samples or tables.
-std::string_view textPart(std::string_view bytes) {
+std::string_view findText(std::string_view bytes) {
   return bytes.substr(0, bytes.find('\0'));
 }
 
@@ -148,7 +148,7 @@ void changeOneOf(std::string& bytes, const Spans& parts, std::mt19937_64& random
 }
 
 void changeNumber(std::string& bytes, std::mt19937_64& random) {
-  const Spans numbers = findNumbers(textPart(bytes));
+  const Spans numbers = findNumbers(findText(bytes));
   if (numbers.empty())
     return;
   const Span number = randomElement(numbers, random);
@@ -176,7 +176,7 @@ void changeBytes(std::string& bytes, std::mt19937_64& random) {
 void corruptOnce(std::string& bytes, std::mt19937_64& random) {
   if (bytes.empty())
     return;
-  const std::string_view text = textPart(bytes);
+  const std::string_view text = findText(bytes);
   switch (randomBelow(random, 10)) {
   case 0:
   case 1:

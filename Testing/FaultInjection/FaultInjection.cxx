@@ -65,7 +65,7 @@ long countPlaces(const Baseline& subject, const FaultKind& kind) {
   const Outcome& outcome = subject.outcome;
   if (kind.kind == Fault::Kind::call)
     return outcome.calls;
-  return kind.kind == Fault::Kind::allocation ? outcome.allocations : outcome.commits;
+  return kind.kind == Fault::Kind::allocation ? outcome.allocations : outcome.changes;
 }
 
 /// Cases for at most `maxCount` places, evenly spaced.
@@ -94,13 +94,13 @@ public:
   /// Must be called from a single thread; 0 < `done` <= number of runs.
   void report(std::size_t done) {
     using std::chrono::duration_cast, std::chrono::minutes;
-    const Clock::duration spent = Clock::now() - m_start;
-    if (spent < m_next)
+    const Clock::duration elapsed = Clock::now() - m_start;
+    if (elapsed < m_next)
       return;
-    m_next = spent + minutes(1);
-    const auto left = spent * (m_total - done) / done;
+    m_next = elapsed + minutes(1);
+    const auto remaining = elapsed * (m_total - done) / done;
     std::fprintf(stderr, "%zu of %zu runs, %lld min left\n", done, m_total,
-                 static_cast<long long>(duration_cast<minutes>(left).count()));
+                 static_cast<long long>(duration_cast<minutes>(remaining).count()));
   }
 
 private:
@@ -228,7 +228,7 @@ int runOne(const Case& testCase, const Tools& tools) {
               result.outcome.place.c_str(), result.outcome.status, result.outcome.signal,
               result.outcome.errors.c_str());
   for (const Frame& frame : result.outcome.frames)
-    std::printf("  in %s\n", functionName(frame).c_str());
+    std::printf("  in %s\n", findFunctionName(frame).c_str());
   for (const std::string& line : result.violations)
     std::printf("violation: %s\n", line.c_str());
   return result.violations.empty() ? 0 : 1;

@@ -17,7 +17,7 @@ namespace {
 using Lines = std::vector<std::string>;
 
 /// Exit statuses that are valid for a run with this fault.
-std::vector<int> allowedStatuses(const Fault& fault) {
+std::vector<int> listAllowedStatuses(const Fault& fault) {
   switch (fault.kind) {
   case Fault::Kind::none:
   case Fault::Kind::counting:
@@ -32,21 +32,21 @@ std::vector<int> allowedStatuses(const Fault& fault) {
 
 Lines checkEnd(const Fault& fault, const Outcome& outcome) {
   Lines violations;
-  if (outcome.hung)
+  if (outcome.hasTimedOut)
     return {"hangs"};
   const bool isKilled = fault.kind == Fault::Kind::signal && fault.value == SIGKILL;
   const bool isLibraryCrash = fault.kind == Fault::Kind::allocation && outcome.signal != 0 &&
-                              !findCulprit(outcome.frames).isOurs;
+                              !findCulprit(outcome.frames).isFenestra;
   if (isKilled || isLibraryCrash)
     return {};
-  const std::vector<int> allowed = allowedStatuses(fault);
+  const std::vector<int> allowed = listAllowedStatuses(fault);
   if (outcome.signal != 0) {
     violations.push_back("crashes with signal " + std::to_string(outcome.signal));
     if (!outcome.frames.empty())
       violations.back() += " in " + findCulprit(outcome.frames).function;
   } else if (std::find(allowed.begin(), allowed.end(), outcome.status) == allowed.end())
     violations.push_back("status " + std::to_string(outcome.status));
-  if (const Lines lines = errorLines(outcome); lines.size() > 1)
+  if (const Lines lines = listErrorLines(outcome); lines.size() > 1)
     violations.push_back(std::to_string(lines.size()) + " error lines");
   return violations;
 }
@@ -143,7 +143,7 @@ std::string stripArguments(const std::string& function) {
 
 } // namespace
 
-Lines errorLines(const Outcome& outcome) {
+Lines listErrorLines(const Outcome& outcome) {
   Lines lines;
   std::istringstream text(outcome.errors);
   for (std::string line; std::getline(text, line);)
@@ -176,7 +176,7 @@ Lines checkRun(const Baseline& baseline, const Fault& fault, const Workspace& wo
   return violations;
 }
 
-std::string functionName(const Frame& frame) {
+std::string findFunctionName(const Frame& frame) {
   std::string name = frame.function;
   if (name.empty()) {
     std::ostringstream command;
@@ -206,7 +206,7 @@ Culprit findCulprit(const std::vector<Frame>& frames) {
     const bool isRuntime =
         std::any_of(std::begin(runtime), std::end(runtime),
                     [&module](const char* name) { return module.starts_with(name); });
-    const std::string function = functionName(frame);
+    const std::string function = findFunctionName(frame);
     if (isRuntime || function.starts_with("std::") || function.starts_with("__"))
       continue;
     if (!unnamedModule.empty() && module != unnamedModule)

@@ -11,17 +11,17 @@ std::vector<std::string> checkRun(const Baseline& baseline, const Fault& fault,
                                   const Workspace& workspace, Outcome& outcome);
 
 /// Lines of standard error that are not warnings.
-std::vector<std::string> errorLines(const Outcome& outcome);
+std::vector<std::string> listErrorLines(const Outcome& outcome);
 
-/// Innermost function on the stack of a crash that is not part of the C or C++ runtime; isOurs: it
-/// belongs to Fenestra.
+/// Innermost function on the stack of a crash that is not part of the C or C++ runtime; isFenestra:
+/// it belongs to Fenestra.
 struct Culprit {
   std::string function;
-  bool isOurs;
+  bool isFenestra;
 };
 
 /// Exported name of a frame's function, or else its name in the symbol table of the module.
-std::string functionName(const Frame& frame);
+std::string findFunctionName(const Frame& frame);
 
 Culprit findCulprit(const std::vector<Frame>& frames);
 

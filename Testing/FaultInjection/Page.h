@@ -9,7 +9,7 @@ namespace fenestra::faults {
 /// Environment variable with the path of the page's file.
 inline constexpr const char* pageVariable = "FENESTRA_FAULTS_PAGE";
 
-/// The system call lseek(-1, 0, mainMarker), which fails, tells the tracer that `main` starts.
+/// The system call lseek(-1, 0, mainMarker), which fails, signals to the tracer that `main` starts.
 inline constexpr int mainMarker = 0x4d41;
 
 struct Frame {

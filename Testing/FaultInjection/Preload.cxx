@@ -37,7 +37,7 @@ bool shouldFail() {
 }
 
 /// Writes the stack of a crash to the page, then raises the signal with its default action.
-void onDeath(int signal) {
+void onCrash(int signal) {
   int none = 0;
   if (page->signal.compare_exchange_strong(none, signal)) {
     void* addresses[std::extent_v<decltype(Page::frames)>];
@@ -71,7 +71,7 @@ int tracedMain(int count, char** words, char** environment) {
     void* unused[1];
     ::backtrace(unused, 1); // loads libgcc now, so that a crash handler need not allocate
     for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
-      std::signal(signal, onDeath);
+      std::signal(signal, onCrash);
     if (shared != MAP_FAILED)
       page = static_cast<Page*>(shared);
   }
@@ -104,10 +104,10 @@ void* aligned_alloc(std::size_t alignment, std::size_t size) {
 }
 
 int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
-  void* const taken = memalign(alignment, size);
-  if (!taken)
+  void* const allocated = memalign(alignment, size);
+  if (!allocated)
     return ENOMEM;
-  *memory = taken;
+  *memory = allocated;
   return 0;
 }
 

@@ -175,7 +175,7 @@ public:
     rusage usage = {};
     for (pid_t thread; (thread = ::wait4(-1, &state, __WALL | __WNOTHREAD, &usage)) > 0;) {
       if (WIFSTOPPED(state))
-        ::ptrace(PTRACE_CONT, thread, nullptr, signalAfter(thread, state));
+        ::ptrace(PTRACE_CONT, thread, nullptr, handleStop(thread, state));
       else if (thread == m_root) {
         m_outcome.peakKilobytes = usage.ru_maxrss;
         onEnd(state);
@@ -185,7 +185,7 @@ public:
 
 private:
   /// Handles a stopped thread; returns the signal to continue it with.
-  long signalAfter(pid_t thread, int state) {
+  long handleStop(pid_t thread, int state) {
     const int event = state >> 16;
     if (event == PTRACE_EVENT_SECCOMP)
       onCall(thread);
@@ -208,10 +208,10 @@ private:
   }
 
   pid_t process(pid_t thread) {
-    const auto [place, isNew] = m_processes.try_emplace(thread, 0);
+    const auto [entry, isNew] = m_processes.try_emplace(thread, 0);
     if (isNew)
-      place->second = findProcess(thread);
-    return place->second;
+      entry->second = findProcess(thread);
+    return entry->second;
   }
 
   void onCall(pid_t thread) {
@@ -221,12 +221,12 @@ private:
     if (registers.orig_rax == SYS_lseek && registers.rdx == mainMarker)
       m_started.insert(process(thread));
     else if (m_started.contains(process(thread)))
-      onCounted(thread, registers);
+      onFileCall(thread, registers);
   }
 
-  void onCounted(pid_t thread, user_regs_struct& registers) {
+  void onFileCall(pid_t thread, user_regs_struct& registers) {
     ++m_outcome.calls;
-    m_outcome.commits += isCommitting(registers) ? 1 : 0;
+    m_outcome.changes += isChange(registers) ? 1 : 0;
     if (m_fault.kind == Fault::Kind::call && m_outcome.calls == m_fault.number) {
       m_outcome.place = describeCall(thread, registers);
       registers.orig_rax = ~0ULL; // skips the call
@@ -235,7 +235,7 @@ private:
     }
     const bool signals =
         m_fault.kind == Fault::Kind::signal || m_fault.kind == Fault::Kind::ignored;
-    if (signals && isCommitting(registers) && m_outcome.commits == m_fault.number) {
+    if (signals && isChange(registers) && m_outcome.changes == m_fault.number) {
       m_outcome.place = describeCall(thread, registers);
       if (process(thread) == m_root)
         ::syscall(SYS_tgkill, m_root, thread, m_fault.value);
@@ -309,7 +309,7 @@ Outcome run(const Command& command, const Fault& fault) {
     throw std::runtime_error("cannot start or trace a process");
   Watchdog watchdog(child);
   Trace(child, fault, outcome).follow();
-  outcome.hung = watchdog.end();
+  outcome.hasTimedOut = watchdog.end();
   outcome.errors = err.content();
   const std::string root = command.folder.parent_path().string() + "/";
   if (const std::size_t at = outcome.place.find(root); at != outcome.place.npos)

@@ -12,7 +12,7 @@ namespace fenestra::faults {
 struct Fault {
   enum class Kind {
     none,
-    counting,   ///< no fault: counts the places for faults
+    counting,   ///< no fault: counts the calls and allocations that could fail
     call,       ///< a call on a file fails with the error `value`
     allocation, ///< an allocation fails
     signal,     ///< the signal `value` is sent before a rename, link, unlink or write
@@ -31,12 +31,12 @@ struct Command {
 
 /// Result of a run.
 struct Outcome {
-  int status = -1;    ///< exit status; -1 if a signal ended the process
-  int signal = 0;     ///< signal that ended the process; 0: none
-  bool hung = false;  ///< killed at the time limit
-  std::string errors; ///< standard error
-  std::string place;  ///< call at which the fault was injected; empty: none
-  long calls = 0, commits = 0, allocations = 0; ///< counts; calls and commits only if traced
+  int status = -1;          ///< exit status; -1 if a signal ended the process
+  int signal = 0;           ///< signal that ended the process; 0: none
+  bool hasTimedOut = false; ///< killed at the time limit
+  std::string errors;       ///< standard error
+  std::string place;        ///< call at which the fault was injected; empty: none
+  long calls = 0, changes = 0, allocations = 0; ///< counts; calls and changes only if traced
   long peakKilobytes = 0;                       ///< maximum resident memory
   std::vector<Frame> frames;                    ///< stack at a crash, innermost first
 };

@@ -17,7 +17,7 @@ FENESTRA_FUZZ(CommandLine, input) {
   std::vector<char*> argv;
   for (std::string& word : words)
     argv.push_back(word.data());
-  if (const auto flags =
+  if (const auto values =
           parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1))
-    makeRenderOptions(*flags);
+    makeRenderOptions(*values);
 }

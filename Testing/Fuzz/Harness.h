@@ -22,8 +22,8 @@ namespace fenestra::fuzzing {
 
 /// Temporary folder of this process. run.sh sets TMPDIR to a folder in memory.
 inline const TemporaryFolder& folder() {
-  static const TemporaryFolder made;
-  return made;
+  static const TemporaryFolder instance;
+  return instance;
 }
 
 /// Writes the input to the file `name` in folder(), replacing the previous input.

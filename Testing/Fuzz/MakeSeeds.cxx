@@ -84,7 +84,7 @@ void makeImages(const fs::path& corpus) {
                                     {"2", "picture.tif"},
                                     {"3", "picture.nrrd"}}) {
     writeImage(image, {}, folder / name);
-    save(corpus / "Picture", name, digit + readBytes(folder / name));
+    save(corpus / "Image", name, digit + readBytes(folder / name));
   }
 }
 
@@ -177,7 +177,7 @@ int main(int argc, char** argv) {
   try {
     const fenestra::TemporaryFolder traps;
     constexpr double spacing = 12.0; // mm: 3 voxels per axis
-    fenestra::testing::writeTraps(traps.path(), spacing);
+    fenestra::testing::writeFormatVariants(traps.path(), spacing);
     fenestra::makeVolumes(argv[1], traps.path());
     fenestra::makeImages(argv[1]);
     fenestra::makeTransforms(argv[1]);

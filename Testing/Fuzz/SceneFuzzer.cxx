@@ -2,7 +2,7 @@
 #include "SceneFixtures.h"
 #include "SceneInputs.h"
 
-FENESTRA_FUZZ(PreparedScene, input) {
+FENESTRA_FUZZ(Scene, input) {
   using namespace fenestra;
   fuzzing::writeSceneFixtures();
   fuzzing::loadScene(fuzzing::writeInput(input, "scene.mrml"));

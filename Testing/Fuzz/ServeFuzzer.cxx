@@ -6,9 +6,9 @@
 
 FENESTRA_FUZZ(Serve, input) {
   using namespace fenestra;
-  OptionValues flags(renderSyntax.options);
-  flags.add("INPUT", "volume.nrrd");
+  OptionValues values(renderSyntax.options);
+  values.add("INPUT", "volume.nrrd");
   const nlohmann::json change = parseJson(input, "a line");
   readId(change);
-  checkChange(change, applyChange(change, flags), Input("volume.nrrd"));
+  checkChange(change, applyChange(change, values), Input("volume.nrrd"));
 }

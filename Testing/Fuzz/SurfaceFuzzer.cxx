@@ -9,7 +9,7 @@ FENESTRA_FUZZ(Surface, input) {
   static const auto validList =
       fuzzing::writeInput("<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>"
                           "<DataSet index=\"0\" file=\"s.vtp\"/></vtkMultiBlockDataSet></VTKFile>",
-                          "whole.vtm");
+                          "valid.vtm");
   const std::string name = fuzzing::chooseName(input, std::array{"s.vtp", "s.vtm"});
   const auto file = fuzzing::writeInput(input, name);
   const Grid reference(Size3(16, 16, 16), Affine::Identity());

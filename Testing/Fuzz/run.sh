@@ -11,16 +11,16 @@ here=$top/Testing/Fuzz
 build_folder=${FENESTRA_FUZZ_BUILD:-$top/build-asan-ubsan}
 work=${FENESTRA_FUZZ_DIR:-$build_folder/fuzz}
 
-# dictionary TARGET: libFuzzer option for its dictionary, if it has one.
-dictionary() {
+# print_dictionary TARGET: prints the libFuzzer option for its dictionary, if it has one.
+print_dictionary() {
   case $1 in
     Checkpoint | Transfer | PropertyJson | Lights | Materials | Preset | Serve) echo "-dict=$here/Dictionaries/Json.dict" ;;
     *) [ ! -f "$here/Dictionaries/$1.dict" ] || echo "-dict=$here/Dictionaries/$1.dict" ;;
   esac
 }
 
-# summary LOG: statistics of libFuzzer.
-summary() {
+# print_summary LOG: prints the statistics of libFuzzer.
+print_summary() {
   awk -F': +' '
     /^stat::number_of_executed_units/ { runs = $2 }
     /^stat::average_exec_per_sec/ { rate = $2 }
@@ -39,8 +39,8 @@ fuzz() {
     "$build_folder/bin/Fuzzers" "$work/corpus/$target" "$here/Corpus/$target" \
     -max_total_time="$seconds" -runs="${FENESTRA_FUZZ_RUNS:--1}" -max_len=16384 -timeout=10 \
     -rss_limit_mb=2048 -close_fd_mask=1 -print_final_stats=1 -reload=0 \
-    -artifact_prefix="$work/findings/$target-" $(dictionary "$target") >"$log" 2>&1 || status=$?
-  printf '%-14s %s  %s\n' "$target" "$(summary "$log")" \
+    -artifact_prefix="$work/findings/$target-" $(print_dictionary "$target") >"$log" 2>&1 || status=$?
+  printf '%-15s %s  %s\n' "$target" "$(print_summary "$log")" \
     "$([ $status -eq 0 ] && echo ok || echo "FINDING, see $log")"
   return $((status != 0))
 }
@@ -54,6 +54,6 @@ targets=("$@")
 memory=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")" fenestra-fuzz-XXXXXX)
 trap 'rm -rf "$memory"' EXIT
 say "Fuzzing, $seconds s per target"
-export -f dictionary summary fuzz
+export -f print_dictionary print_summary fuzz
 export here seconds build_folder work memory
 printf '%s\n' "${targets[@]}" | xargs -P 2 -I{} bash -c 'fuzz {}' || exit 1

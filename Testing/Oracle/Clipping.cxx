@@ -23,26 +23,26 @@ struct DepthHit {
   double t;      ///< first t with indicator >= 1/2, else that of the maximum; infinity: neither
   double height; ///< indicator at t
 
-  /// Replaces the maximum by a later one if 1/2 - `there` < (1/2 - height) / 64.
-  void update(double top, double there) {
-    if (there > 0.25 && (height <= 0.25 || 0.5 - there < (0.5 - height) / 64.0))
-      *this = {top, there};
+  /// Replaces the maximum by a later one if 1/2 - laterHeight < (1/2 - height) / 64.
+  void update(double later, double laterHeight) {
+    if (laterHeight > 0.25 && (height <= 0.25 || 0.5 - laterHeight < (0.5 - height) / 64.0))
+      *this = {later, laterHeight};
   }
 };
 
-/// Searches a ray within the volume: samples the indicator twenty-five times per voxel and at each
+/// Searches a ray within the volume: samples the indicator 25 times per voxel and at each
 /// maximum between samples, where a ray may graze the surface; then bisects. Steps outside the
 /// focus's box, where the indicator is 0, are counted but not evaluated.
-DepthHit searchRay(const FocusField& focus, const Medium& matter, const Ray& ray,
+DepthHit searchRay(const FocusField& focus, const Medium& medium, const Ray& ray,
                    const Interval& range) {
-  Interval part = matter.boxInterval(ray.origin, ray.direction);
+  Interval part = medium.boxInterval(ray.origin, ray.direction);
   part = {std::max(part.begin, range.begin), std::min(part.end, range.end)};
   const auto level = [&](double t) {
     const Vec3 world = ray.at(t);
     const double value = focus.at(world);
-    return value > 0.0 && matter.contains(world) ? value : 0.0;
+    return value > 0.0 && medium.contains(world) ? value : 0.0;
   };
-  const auto between = [&](double outside, double inside) {
+  const auto bisect = [&](double outside, double inside) {
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (outside + inside);
       (level(middle) >= 0.5 ? inside : outside) = middle;
@@ -60,12 +60,12 @@ DepthHit searchRay(const FocusField& focus, const Medium& matter, const Ray& ray
       continue;
     const double next = std::min(t + step, part.end), there = level(next);
     if (there >= 0.5)
-      return between(t, next);
+      return bisect(t, next);
     if (here > 0.2 && here >= before && here >= there) {
       const double top = findMaximum(level, std::max(t - step, part.begin), next);
       const double height = level(top);
       if (height >= 0.5)
-        return between(std::max(t - step, part.begin), top);
+        return bisect(std::max(t - step, part.begin), top);
       best.update(top, height);
     }
     before = here;
@@ -75,8 +75,8 @@ DepthHit searchRay(const FocusField& focus, const Medium& matter, const Ray& ray
   return best;
 }
 
-double findFirstHit(const FocusField& focus, const Medium& matter, const Ray& ray) {
-  const DepthHit hit = searchRay(focus, matter, ray, {});
+double findFirstHit(const FocusField& focus, const Medium& medium, const Ray& ray) {
+  const DepthHit hit = searchRay(focus, medium, ray, {});
   return hit.height >= 0.5 ? hit.t : infinity;
 }
 
@@ -142,13 +142,13 @@ private:
 };
 
 std::vector<double> computeDepths(const DepthClip& clip, const FocusField& focus, const View& view,
-                                  const Medium& matter) {
+                                  const Medium& medium) {
   std::vector<double> depths;
   std::vector<Intersection> hits;
   for (const double y : clip.rows)
     for (const double x : clip.columns) {
       const Ray ray = view.makeRay(x, y);
-      const double t = findFirstHit(focus, matter, ray);
+      const double t = findFirstHit(focus, medium, ray);
       depths.push_back(t < infinity ? view.depth(ray.at(t)) : infinity);
       if (t < infinity)
         hits.push_back({Vec2(x, y), ray.at(t), depths.back()});
@@ -244,11 +244,11 @@ double FocusField::at(const Vec3& world) const {
   return sum;
 }
 
-Clipping::Clipping(const ClipDescription& description, const View& view, const Medium& matter)
-    : m_description(description), m_view(view), m_matter(matter) {
+Clipping::Clipping(const ClipDescription& description, const View& view, const Medium& medium)
+    : m_description(description), m_view(view), m_medium(medium) {
   if (const auto* clip = std::get_if<DepthClip>(&description)) {
     m_focus.emplace(clip->focus);
-    m_depths = computeDepths(*clip, *m_focus, view, matter);
+    m_depths = computeDepths(*clip, *m_focus, view, medium);
   }
 }
 
@@ -267,26 +267,26 @@ double Clipping::linearSurface(const Vec2& at) const {
                        x.fraction * sampleDepth(x.before + 1, y.before + 1));
 }
 
-double Clipping::depthClipWeight(double here, const Vec2& at) const {
+double Clipping::depthClipWeight(double depth, const Vec2& at) const {
   const auto& clip = std::get<DepthClip>(m_description);
   const SamplePosition x = locateSample(clip.columns, at.x()), y = locateSample(clip.rows, at.y());
-  const auto weightBehind = [&](double surface) { return edgeWeight(clip.edge, here - surface); };
+  const auto weightBehind = [&](double surface) { return edgeWeight(clip.edge, depth - surface); };
   if (clip.hasSteps())
     return weightBehind(
         sampleDepth(x.before + (x.fraction >= 0.5), y.before + (y.fraction >= 0.5)));
-  const double between = linearSurface(at);
+  const double linearDepth = linearSurface(at);
   const auto cell = clip.silhouettes.find(y.before * clip.columns.size() + x.before);
   if (cell == clip.silhouettes.end())
-    return weightBehind(between);
+    return weightBehind(linearDepth);
   // The surface lies between two depths. If both give the same weight, no search is needed.
-  const double weight = weightBehind(std::max(between, cell->second.max));
-  if (weight == weightBehind(std::min(between, cell->second.min)))
+  const double weight = weightBehind(std::max(linearDepth, cell->second.max));
+  if (weight == weightBehind(std::min(linearDepth, cell->second.min)))
     return weight;
-  return weightBehind(silhouetteSurface(cell->second, at, between));
+  return weightBehind(silhouetteSurface(cell->second, at, linearDepth));
 }
 
 double Clipping::silhouetteSurface(const DepthClip::SilhouetteCell& cell, const Vec2& at,
-                                   double between) const {
+                                   double linearDepth) const {
   const auto& clip = std::get<DepthClip>(m_description);
   const Ray ray = m_view.makeRay(at.x(), at.y());
   const double depthPerLength = m_view.depth(ray.at(1.0)) - m_view.depth(ray.at(0.0));
@@ -294,12 +294,12 @@ double Clipping::silhouetteSurface(const DepthClip::SilhouetteCell& cell, const 
     return (depth - clip.offset - m_view.depth(ray.at(0.0))) / depthPerLength;
   };
   const DepthHit hit =
-      searchRay(*m_focus, m_matter, ray, {std::max(0.0, lengthTo(cell.min)), infinity});
+      searchRay(*m_focus, m_medium, ray, {std::max(0.0, lengthTo(cell.min)), infinity});
   const double fraction = std::clamp((hit.height - 0.25) / 0.25, 0.0, 1.0);
   if (fraction == 0.0)
-    return between;
+    return linearDepth;
   const double depth = m_view.depth(ray.at(hit.t)) + clip.offset;
-  return between + fraction * (std::min(depth, cell.max) - between);
+  return linearDepth + fraction * (std::min(depth, cell.max) - linearDepth);
 }
 
 double Clipping::clipWeight(const Vec3& world) const {

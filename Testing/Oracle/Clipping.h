@@ -28,32 +28,32 @@ private:
 class Clipping {
 public:
   /// Builds the complete buffer of a depth clip.
-  Clipping(const ClipDescription& description, const View& view, const Medium& matter);
+  Clipping(const ClipDescription& description, const View& view, const Medium& medium);
 
   /// Factor on the extinction, 0 to 1.
   double clipWeight(const Vec3& world) const;
 
-  /// Gradient that a soft cut adds to the scalar's, spans of the transfer function per mm. From 0
-  /// to `softness` behind the cut it is half a span over `softness`, along the cut's normal into
-  /// the medium. A depth clip's normal is that of the surface linear between samples, by
-  /// differences; where the surface has steps, the view axis.
+  /// Gradient that a soft cut adds to the scalar's, in spans (Medium.h) per mm. From 0 to
+  /// `softness` behind the cut, its length is 0.5 / softness and its direction the cut's normal
+  /// into the medium. A depth clip's normal is that of the bilinear surface, by finite differences;
+  /// where the surface has steps, it is the view axis.
   Vec3 cutGradient(const Vec3& world) const;
 
-  /// Depth buffer of a depth clip, mm, row by row; -infinity where a cutaway removes nothing.
+  /// Depth buffer of a depth clip, mm, row by row; -infinity: a cutaway removes nothing there.
   const std::vector<double>& depths() const { return m_depths; }
 
 private:
-  double depthClipWeight(double here, const Vec2& at) const;
+  double depthClipWeight(double depth, const Vec2& at) const;
   /// Depth of sample (column, row), clamped to the last row and column.
   double sampleDepth(std::size_t column, std::size_t row) const;
   /// Depth of a surface without steps, by bilinear interpolation between samples.
   double linearSurface(const Vec2& at) const;
   double silhouetteSurface(const DepthClip::SilhouetteCell& cell, const Vec2& at,
-                           double between) const;
+                           double linearDepth) const;
 
   const ClipDescription& m_description;
   const View& m_view;
-  const Medium& m_matter;
+  const Medium& m_medium;
   std::optional<FocusField> m_focus; ///< of a depth clip
   std::vector<double> m_depths;
 };

@@ -35,9 +35,9 @@ struct PixelEstimate {
     m3 += added * step * (samples - 2.0) - 3.0 * step * m2;
     m2 += added;
     const FirstCollision value(path.collides ? 1.0 : 0.0, path.depth, path.albedo.mean());
-    const FirstCollision ahead = value - first;
-    first += ahead / samples;
-    firstM2 += ahead * (value - first);
+    const FirstCollision delta = value - first;
+    first += delta / samples;
+    firstM2 += delta * (value - first);
   }
 
   /// Variance of the mean; 0 below two samples.

@@ -33,12 +33,12 @@ PlacedArea place(const AreaLight& light, const Grid& grid, const View& view) {
     area.size.y() = area.size.x();
   if (light.frame == LightFrame::camera) {
     const auto [middle, radius] = BoundingSphere(grid);
-    const auto turned = [&](const Vec3& v) {
+    const auto toWorld = [&](const Vec3& v) {
       return Vec3(v.x() * view.right + v.y() * view.up - v.z() * view.forward);
     };
-    area.center = middle + radius * turned(light.center);
-    area.normal = turned(light.normal);
-    area.up = turned(light.up);
+    area.center = middle + radius * toWorld(light.center);
+    area.normal = toWorld(light.normal);
+    area.up = toWorld(light.up);
     area.size *= radius;
   }
   area.normal = area.normal.normalized();
@@ -161,18 +161,18 @@ Rgb Lights::areaRadiance(const Ray& ray, double end) const {
 }
 
 Vec3 Lights::sampleArea(const Vec3& point, Generator& generator) const {
-  const std::size_t which = generator() % (m_areas.size() + m_spheres.size());
-  if (which >= m_areas.size()) {
-    const PlacedSphere& sphere = m_spheres[which - m_areas.size()];
+  const std::size_t index = generator() % (m_areas.size() + m_spheres.size());
+  if (index >= m_areas.size()) {
+    const PlacedSphere& sphere = m_spheres[index - m_areas.size()];
     return (sphere.center + sphere.radius * sampleUnitSphere(generator) - point).normalized();
   }
-  const PlacedArea& light = m_areas[which];
+  const PlacedArea& light = m_areas[index];
   for (;;) {
     const double x = uniform(generator) - 0.5, y = uniform(generator) - 0.5;
     if (light.shape == AreaLight::Shape::disk && std::hypot(x, y) > 0.5)
       continue;
-    const Vec3 on = light.center + x * light.size.x() * light.right + y * light.size.y() * light.up;
-    return (on - point).normalized();
+    const Vec3 p = light.center + x * light.size.x() * light.right + y * light.size.y() * light.up;
+    return (p - point).normalized();
   }
 }
 

@@ -11,7 +11,7 @@ namespace fenestra::oracle {
 struct PlacedArea {
   AreaLight::Shape shape;
   Vec3 center, normal, right, up;
-  Vec2 size; ///< full edges; for a disk, its diameter twice
+  Vec2 size; ///< full edges; for a disk, both are the diameter
   Rgb radiance;
 
   double area() const;

@@ -1,5 +1,5 @@
 #pragma once
-// The classified volume at a point, straight from the voxels and the knots of the medium's table.
+// The classified volume at a point, directly from voxels and knots of the transfer function.
 
 #include "OracleScene.h"
 
@@ -23,9 +23,9 @@ public:
   double scalar(const Vec3& world) const { return scalarAtIndex(m_worldToIndex * world); }
   /// Gradient of the scalar, per mm, world axes.
   Vec3 gradient(const Vec3& world) const;
-  /// Transfer function of the volume; below, a component's may be passed instead.
+  /// Transfer function of the volume. The functions below accept that of a component instead.
   const TransferFunction& transfer() const { return m_transfer; }
-  /// Gradient in spans of the volume's transfer function, which must have at least two knots.
+  /// Gradient in spans (scalar ranges of the transfer function) per mm. Requires two knots.
   Vec3 spansPerMm(const Vec3& world) const;
   /// Extinction, mm^-1, by a transfer function; valid inside the volume only.
   double extinction(const TransferFunction& transfer, const Vec3& world, double scalar) const;

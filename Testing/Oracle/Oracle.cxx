@@ -58,7 +58,7 @@ public:
                                        estimateAreaLight(point, scatterer, generator));
       const Vec3 outgoing = scatterer.sample(generator);
       throughput *= scatterer.f(outgoing) / scatterer.pdf(outgoing);
-      if (!playRoulette(throughput, generator))
+      if (!survivesRoulette(throughput, generator))
         break;
       ray = {point, outgoing};
       distance = findCollision(ray, generator);
@@ -74,7 +74,7 @@ public:
   const Clipping& clipping() const { return m_clipping; }
 
 private:
-  /// What a collision samples from the medium.
+  /// Properties of the medium that a collision samples.
   struct Collision {
     std::size_t component;
     Rgb albedo;
@@ -96,13 +96,13 @@ private:
       const Vec3 point = ray.at(t);
       if (!m_medium.contains(point))
         continue;
-      if (uniform(generator) * m_majorant < addUp(extinctions(point)))
+      if (uniform(generator) * m_majorant < addUp(computeExtinctions(point)))
         return t;
     }
   }
 
   /// Extinction, mm^-1, of each component: clip weight (1 if unclipped) times w sigma(s).
-  Segments::Weights extinctions(const Vec3& point) const {
+  Segments::Weights computeExtinctions(const Vec3& point) const {
     Segments::Weights all{};
     Segments::Weights fractions{1.0};
     if (isMixed())
@@ -118,21 +118,21 @@ private:
 
   static double addUp(const Segments::Weights& all) {
     double sum = 0.0;
-    for (const double one : all)
-      sum += one;
+    for (const double extinction : all)
+      sum += extinction;
     return sum;
   }
 
   /// Samples one component in proportion to the extinctions.
   Collision sampleComponent(const Vec3& point, Generator& generator) const {
-    std::size_t drawn = 0;
+    std::size_t sampled = 0;
     if (isMixed()) {
-      const Segments::Weights all = extinctions(point);
-      double left = uniform(generator) * addUp(all);
-      while (drawn + 1 < m_components.size() && left >= all[drawn])
-        left -= all[drawn++];
+      const Segments::Weights all = computeExtinctions(point);
+      double remaining = uniform(generator) * addUp(all);
+      while (sampled + 1 < m_components.size() && remaining >= all[sampled])
+        remaining -= all[sampled++];
     }
-    return {drawn, albedo(drawn, point)};
+    return {sampled, albedo(sampled, point)};
   }
 
   PathEstimate sampleBackground(const Ray& ray) const {
@@ -209,7 +209,7 @@ private:
 
   /// Russian roulette at low throughput. (Analog absorption in a dark medium would leave too few
   /// bright paths to estimate the error of their mean.)
-  static bool playRoulette(Rgb& throughput, Generator& generator) {
+  static bool survivesRoulette(Rgb& throughput, Generator& generator) {
     constexpr double threshold = 0.05;
     const double most = throughput.maxCoeff();
     if (most >= threshold)

@@ -1,5 +1,5 @@
 #pragma once
-// Input of the oracle: plain data of the product, without code that computes.
+// Input of the oracle: data types of the product, but none of its algorithms.
 
 #include "model/camera/Background.h"
 #include "model/camera/Camera.h"
@@ -95,8 +95,8 @@ struct OracleScene {
   CameraPose pose = {};
   int width = 16, height = 16;
   ClipDescription clip = {};
-  std::optional<Affine> crop = {}; ///< maps [-1, 1]^3 to the part that stays; empty: no crop
-  Background background = {};      ///< any but a gradient
+  std::optional<Affine> crop = {}; ///< maps [-1, 1]^3 to the part that remains; empty: no crop
+  Background background = {};      ///< any kind except a gradient
   std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max();
   std::optional<StyleDescription> style = {};
   std::optional<ComponentsDescription> components = {};

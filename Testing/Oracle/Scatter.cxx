@@ -73,7 +73,7 @@ Scatterer Scatterer::makeSurface(const Vec3& incoming, const Rgb& albedo, const 
 /// roughness^2 = 2 / (power + 2), G the product of Smith's two terms, F Schlick's with F0 = 0.04.
 /// Coat of weight w, F0 = 0.028, over a matte base (Kelemen, Szirmay-Kalos 2001):
 /// base / pi (1 - w E(cos_i)) (1 - w E(cos_o)) / (1 - w E_mean). E is the coat's total reflectance,
-/// E_mean the integral of 2 x E(x); base / (1 - base) is odds times albedo / (1 - albedo).
+/// E_mean the integral of 2 x E(x); base / (1 - base) = oddsFactor albedo / (1 - albedo).
 Rgb Scatterer::f(const Vec3& outgoing) const {
   if (!m_shading)
     return m_albedo * henyeyGreenstein(m_incoming.dot(outgoing), m_g);
@@ -94,19 +94,19 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
       d * fresnel(h.dot(outgoing)) * smith(cosIn) * smith(cosOut) / (4.0 * cosIn * cosOut);
   const double w = m_shading->specular;
   if (m_shading->coated) {
-    const auto under = [&](double cosine) {
+    const auto transmittance = [&](double cosine) {
       return 1.0 - w * evaluateCoat(*m_shading->coated, cosine);
     };
-    const double through = under(cosIn) * under(cosOut);
-    double everywhere = 0.0; // 2 x under(x), by the midpoint rule
+    const double product = transmittance(cosIn) * transmittance(cosOut);
+    double integral = 0.0; // of 2 x transmittance(x), by the midpoint rule
     constexpr int steps = 64;
     for (int i = 0; i < steps; ++i)
-      everywhere += 2.0 * (i + 0.5) / steps * under((i + 0.5) / steps) / steps;
+      integral += 2.0 * (i + 0.5) / steps * transmittance((i + 0.5) / steps) / steps;
     Rgb base = m_albedo;
     for (int c = 0; c < 3; ++c)
       if (base[c] > 0.0)
         base[c] = 1.0 / (1.0 + (1.0 / m_albedo[c] - 1.0) / m_shading->oddsFactor);
-    return (m_shading->diffuse * base / pi * through / everywhere + w * glossy) * cosOut;
+    return (m_shading->diffuse * base / pi * product / integral + w * glossy) * cosOut;
   }
   const double excess = std::max(1.0, m_shading->diffuse + m_shading->specular);
   return (m_shading->diffuse * m_albedo / pi + w * glossy) / excess * cosOut;

@@ -1,5 +1,5 @@
 #pragma once
-// Label weights of components at a point, straight from the masks of their segments.
+// Label weights of components at a point, directly from the masks of their segments.
 
 #include "OracleScene.h"
 
@@ -9,7 +9,7 @@ namespace fenestra::oracle {
 
 class Segments {
 public:
-  static constexpr std::size_t maxComponents = 16; ///< components
+  static constexpr std::size_t maxComponents = 16;
   /// Label weight of each component; all sum to 1.
   using Weights = std::array<double, maxComponents>;
 

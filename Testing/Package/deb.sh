@@ -19,8 +19,8 @@ pack() {
   (cd "$build" && cpack -B "$1") >"$work/log" 2>&1 || fail "packaging failed: $(tail "$work/log")"
 }
 pack "$work"
-said=$("$build/bin/fenestra" --version)
-version=$(head -n 1 <<<"$said" | cut -d ' ' -f 2)
+version_text=$("$build/bin/fenestra" --version)
+version=$(head -n 1 <<<"$version_text" | cut -d ' ' -f 2)
 package=$work/fenestra_$version-1_$(dpkg --print-architecture).deb
 [ -f "$package" ] || fail "unexpected package name: $(ls "$work"/*.deb)"
 
@@ -44,11 +44,11 @@ needs=$(dpkg-deb -f "$package" Depends)
 for library in libc6 libinsighttoolkit libopencolorio libopenexr libtbb libhwy libzip libpng libtiff; do
   [[ $needs == *$library* ]] || fail "missing dependency on $library: $needs"
 done
-[ "$("$usr/bin/fenestra" --version)" = "$said" ] || fail "the packaged program differs from the build's"
+[ "$("$usr/bin/fenestra" --version)" = "$version_text" ] || fail "the packaged program differs from the build's"
 [ "$(gzip -dc "$usr/share/man/man1/fenestra.1.gz")" = "$("$usr/bin/fenestra" describe man)" ] ||
   fail "the manual page differs from 'fenestra describe man'"
 [ $# -lt 2 ] && exit
-verdict=$(lintian --allow-root --fail-on error,warning "$package" 2>&1) || fail "$verdict"
-[ -z "$verdict" ] || fail "$verdict"
+messages=$(lintian --allow-root --fail-on error,warning "$package" 2>&1) || fail "$messages"
+[ -z "$messages" ] || fail "$messages"
 pack "$work/again"
 cmp "$package" "$work/again/${package##*/}" || fail "packaging is not reproducible"

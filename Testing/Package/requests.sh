@@ -26,7 +26,7 @@ run jpeg2000 "$fenestra" render "$data/jpeg2000" $quick --output jpeg2000.png
 run archive "$fenestra" render "$data/cube.mrb" $quick --output archive.nrrd
 run turntable "$fenestra" turntable "$data/cube.mrb" $quick --frames 3 --output turn.png
 printf 'name,input,view\nfront,%s,\nleft,%s,left\n' "$data/cube.mrb" "$data/cube.mrb" >cases.csv
-run study "$fenestra" study cases.csv $quick --output study
+run batch "$fenestra" batch cases.csv $quick --output batch
 run compare "$fenestra" compare dicom.tif dicom.tif
 
 # until_done ID: waits until serve has published its last image of a change.

@@ -88,11 +88,12 @@ double Agreement::probability() const {
   return -std::expm1(3.0 * std::log1p(-std::min({pixels, tiles, mean})));
 }
 
-Agreement agreement(const Image& image, const Image& baseline) {
-  const auto over = [&](int size) {
+Agreement compareWithBaseline(const Image& image, const Image& baseline) {
+  const auto compareTiles = [&](int size) {
     return computeAgreement(computeTileMeans(image, size), computeTileMeans(baseline, size));
   };
-  return {computeAgreement(image, baseline), over(8), over(std::max(image.width, image.height))};
+  return {computeAgreement(image, baseline), compareTiles(8),
+          compareTiles(std::max(image.width, image.height))};
 }
 
 } // namespace fenestra::testing

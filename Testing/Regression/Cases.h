@@ -44,9 +44,9 @@ struct Agreement {
   /// Combined probability of the three scales (Šidák 1967).
   double probability() const;
   /// True if the difference can be noise. Wrongly false for one in 10,000 renders.
-  bool holds() const { return probability() >= 1e-4; }
+  bool canBeNoise() const { return probability() >= 1e-4; }
 };
 
-Agreement agreement(const Image& image, const Image& baseline);
+Agreement compareWithBaseline(const Image& image, const Image& baseline);
 
 } // namespace fenestra::testing

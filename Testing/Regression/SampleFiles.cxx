@@ -168,7 +168,7 @@ void writeVolume(const std::filesystem::path& path, const Nrrd& nrrd, double off
     write(std::filesystem::path(path).replace_extension(".raw"), samples);
 }
 
-// ---- traps
+// ---- format variants
 // --------------------------------------------------------------------------------------
 
 /// Writes volumes with different directions and spacings of their axes.
@@ -275,7 +275,7 @@ void writeSegments(const std::filesystem::path& folder, double s) {
 
 } // namespace
 
-void writeTraps(const std::filesystem::path& folder, double spacing) {
+void writeFormatVariants(const std::filesystem::path& folder, double spacing) {
   writeGeometries(folder, spacing);
   writeEncodings(folder, spacing);
   writeSegments(folder, spacing);

@@ -1,6 +1,6 @@
 #pragma once
-// Format traps: files that store the same analytic subject in different ways, such as axes, types
-// and encodings. They are written without the libraries that the readers use.
+// Format variants: files that store the same analytic subject with different axes, types and
+// encodings. They are written without the libraries that the readers use.
 
 #include <filesystem>
 
@@ -8,6 +8,6 @@ namespace fenestra::testing {
 
 /// Writes volumes and segmentations with voxels of about `spacing` mm over a field of view of 40 mm
 /// into `folder`, which must exist.
-void writeTraps(const std::filesystem::path& folder, double spacing);
+void writeFormatVariants(const std::filesystem::path& folder, double spacing);
 
 } // namespace fenestra::testing

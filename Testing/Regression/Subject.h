@@ -1,6 +1,6 @@
 #pragma once
-// Analytic subject of the format traps: a body with four different organs, none on an axis, so that
-// every flip, permutation or shift of axes changes the image.
+// Analytic subject of the format variants: a body with four different organs, none on an axis, so
+// that every flip, permutation or shift of axes changes the image.
 
 #include "base/Vector.h"
 

@@ -24,22 +24,22 @@ QString toQString(const std::filesystem::path& path) {
 class OtherSession {
 public:
   explicit OtherSession(const TemporaryFolder& parent) {
-    int tell[2];
-    EXPECT_EQ(::pipe(tell), 0);
+    int ends[2];
+    EXPECT_EQ(::pipe(ends), 0);
     m_process = ::fork();
     if (m_process == 0) {
       const qFenestraFolder folder(toQString(parent.path()), "session-");
       std::ofstream(folder.filePath("patient.nrrd").toStdString()) << "voxels";
       const std::string path = folder.path().toStdString();
-      [[maybe_unused]] const auto written = ::write(tell[1], path.data(), path.size());
+      [[maybe_unused]] const auto written = ::write(ends[1], path.data(), path.size());
       for (;;)
         ::pause();
     }
     char path[4096] = {};
-    EXPECT_GT(::read(tell[0], path, sizeof path - 1), 0);
+    EXPECT_GT(::read(ends[0], path, sizeof path - 1), 0);
     folder = path;
-    ::close(tell[0]);
-    ::close(tell[1]);
+    ::close(ends[0]);
+    ::close(ends[1]);
   }
   ~OtherSession() { crash(); }
   OtherSession(const OtherSession&) = delete;
@@ -124,9 +124,9 @@ TEST_F(SlicerCopies, FailedCopyKeepsTheOldFileAndLeavesNoPartialFile) {
   struct rlimit before = {};
   ::getrlimit(RLIMIT_FSIZE, &before);
   ::signal(SIGXFSZ, SIG_IGN);
-  struct rlimit full = before;
-  full.rlim_cur = 4096; // like a full disk
-  ::setrlimit(RLIMIT_FSIZE, &full);
+  struct rlimit limited = before;
+  limited.rlim_cur = 4096; // like a full disk
+  ::setrlimit(RLIMIT_FSIZE, &limited);
   const QString failed = qFenestraCopies::picture(path("new.png"), path("old.png"), ".png").write();
   ::setrlimit(RLIMIT_FSIZE, &before);
   ::signal(SIGXFSZ, SIG_DFL);

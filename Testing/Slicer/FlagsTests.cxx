@@ -88,7 +88,7 @@ TEST(SlicerFlags, MalformedValuesAreInvalid) {
 TEST(SlicerFlags, FileNamesAreDetectedEvenInsideJson) {
   for (const auto& [name, value] : std::vector<Case>{
            {"transfer", "/etc/passwd"},
-           {"transfer", "colours.vp"},
+           {"transfer", "mine.vp"},
            {"transfer", "..\\secret"},
            {"preset", "\\\\server\\share"},
            {"preset", "~root"},
@@ -114,8 +114,8 @@ TEST(SlicerFlags, KindsMatchTheRenderersOptions) {
     ASSERT_TRUE(known.contains(name)) << flag.name;
     const bool hasWords = !known[name].choices.isEmpty();
     EXPECT_EQ(flag.kind == FlagKind::word, hasWords) << flag.name;
-    const bool maySayAuto = !hasWords && flag.kind != FlagKind::resource; // there, "auto" is a name
-    EXPECT_EQ(flag.kind == FlagKind::numberOrAuto, maySayAuto && known[name].text.contains("auto:"))
+    const bool canBeAuto = !hasWords && flag.kind != FlagKind::resource; // may be named "auto"
+    EXPECT_EQ(flag.kind == FlagKind::numberOrAuto, canBeAuto && known[name].text.contains("auto:"))
         << flag.name;
     EXPECT_TRUE(!SlicerExport::isRepeatable(flag.name) ||
                 known[name].text.contains("may be repeated"))
@@ -139,12 +139,12 @@ TEST(SlicerFlags, JoinedListsAreSplitAgain) {
 /// The renderer would reject a change to a missing segment, and render no image.
 TEST(SlicerFlags, ChangesToMissingSegmentsAreRemoved) {
   using Flags = std::map<std::string, std::string>;
-  const std::vector<SlicerExport::Segment> there = {{"S,1", "Liver", 1}, {"S2", "Aorta", 7}};
+  const std::vector<SlicerExport::Segment> segments = {{"S,1", "Liver", 1}, {"S2", "Aorta", 7}};
   const auto change = [](const char* selector) { return std::string(selector) + ": clip=no"; };
   const std::string value = SlicerExport::joinList(
       {change("S,1"), change("gone"), change("Aorta"), change("7"), change("8")});
   EXPECT_EQ(
-      SlicerExport::filterMaterialFlags(there, {{"materials", "auto"}, {"material", value}}),
+      SlicerExport::filterMaterialFlags(segments, {{"materials", "auto"}, {"material", value}}),
       (Flags{{"materials", "auto"},
              {"material", SlicerExport::joinList({change("S,1"), change("Aorta"), change("7")})}}));
   EXPECT_EQ(SlicerExport::filterMaterialFlags({}, {{"materials", "auto"}, {"material", value}}),

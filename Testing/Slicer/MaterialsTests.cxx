@@ -32,7 +32,7 @@ using Materials = qSlicerFenestraMaterials;
 const QString program = FENESTRA_EXECUTABLE;
 
 bool waitFor(const std::function<bool()>& condition) {
-  const int timeoutMs = 30000 * static_cast<int>(testing::sampleDivisor()); // milliseconds
+  const int timeoutMs = 30000 * static_cast<int>(testing::sampleDivisor());
   QElapsedTimer watch;
   watch.start();
   while (!condition() && watch.elapsed() < timeoutMs)
@@ -59,15 +59,15 @@ QList<qSlicerFenestraSegment> toPanelSegments(const std::vector<SlicerExport::Se
 
 qFenestraMaterials queryMaterials(const std::vector<SlicerExport::Segment>& all,
                                   const TemporaryFolder& folder) {
-  qFenestraMaterialsQuery question;
-  std::vector<qFenestraMaterials> told;
-  QObject::connect(&question, &qFenestraMaterialsQuery::told,
-                   [&](const qFenestraMaterials& materials) { told.push_back(materials); });
-  question.request(program, {}, QString::fromStdString(folder.path().string()));
-  question.request(program, all, QString::fromStdString(folder.path().string()));
-  EXPECT_TRUE(waitFor([&] { return !told.empty(); }));
-  EXPECT_EQ(told.size(), 1u) << "an outdated query has no result";
-  return told.empty() ? qFenestraMaterials() : told.back();
+  qFenestraMaterialsQuery query;
+  std::vector<qFenestraMaterials> results;
+  QObject::connect(&query, &qFenestraMaterialsQuery::told,
+                   [&](const qFenestraMaterials& materials) { results.push_back(materials); });
+  query.request(program, {}, QString::fromStdString(folder.path().string()));
+  query.request(program, all, QString::fromStdString(folder.path().string()));
+  EXPECT_TRUE(waitFor([&] { return !results.empty(); }));
+  EXPECT_EQ(results.size(), 1u) << "an outdated query has no result";
+  return results.empty() ? qFenestraMaterials() : results.back();
 }
 
 /// The renderer's materials for the segments, queried once.
@@ -92,16 +92,16 @@ protected:
   QString text(int row) { return widget().item(row, name)->text(); }
   void choose(const char* word) { source().setCurrentIndex(source().findData(word)); }
   std::string chosen() { return source().currentData().toString().toStdString(); }
-  void setMaterial(int row, const char* of) {
+  void setMaterial(int row, const char* materialName) {
     auto& box = cell<QComboBox>(row, material);
-    box.setCurrentIndex(box.findData(of));
+    box.setCurrentIndex(box.findData(materialName));
   }
   void setClip(int row, bool isClipped) {
     widget().item(row, clip)->setCheckState(isClipped ? Qt::Checked : Qt::Unchecked);
   }
   bool isClipped(int row) { return widget().item(row, clip)->checkState() == Qt::Checked; }
   /// Color on the row's button, or its text.
-  QString seen(int row) {
+  QString shownColor(int row) {
     auto& button = cell<QToolButton>(row, color);
     return button.icon().isNull() ? button.text()
                                   : button.icon().pixmap(16).toImage().pixelColor(8, 8).name();
@@ -118,7 +118,7 @@ protected:
   }
 
   /// Nonempty flags.
-  Flags taken() const {
+  Flags takeFlags() const {
     Flags all, given;
     table.take(all);
     for (const auto& [name, value] : all)
@@ -126,7 +126,7 @@ protected:
         given[name] = value;
     return given;
   }
-  std::vector<std::string> arguments() const { return SlicerExport::toArguments(taken()); }
+  std::vector<std::string> arguments() const { return SlicerExport::toArguments(takeFlags()); }
 
   Materials table;
 };
@@ -141,10 +141,10 @@ TEST_F(SlicerMaterials, RendererReportsItsChoicesAndItsLibrary) {
   EXPECT_TRUE(cell<QComboBox>(0, material).toolTip().contains("by name"));
   EXPECT_EQ(cell<QComboBox>(1, material).itemText(0), "artery (automatic)");
   EXPECT_EQ(cell<QComboBox>(2, material).itemText(0), "Automatic");
-  EXPECT_TRUE(cell<QComboBox>(2, material).toolTip().contains("by its own colour"));
+  EXPECT_TRUE(cell<QComboBox>(2, material).toolTip().contains("by its own color"));
   EXPECT_EQ(cell<QComboBox>(0, material).count(), knownMaterials().library.size() + 1);
-  EXPECT_EQ(seen(0), "#963e2e");
-  EXPECT_EQ(seen(2), "#3366cc"); // the segment's own color
+  EXPECT_EQ(shownColor(0), "#963e2e");
+  EXPECT_EQ(shownColor(2), "#3366cc"); // the segment's own color
 }
 
 TEST_F(SlicerMaterials, SourceIsOneFlagWithoutChanges) {
@@ -161,7 +161,7 @@ TEST_F(SlicerMaterials, SourceIsOneFlagWithoutChanges) {
   file.setText("/data/my own.json");
   emit file.editingFinished();
   EXPECT_EQ(arguments(), (Strings{"--materials=/data/my own.json"}));
-  EXPECT_EQ(seen(0), "...") << "the colors of a materials file are unknown";
+  EXPECT_EQ(shownColor(0), "...") << "the colors of a materials file are unknown";
   choose("hand");
   EXPECT_EQ(arguments(), (Strings{"--materials=/data/my own.json"}));
   choose("");
@@ -182,10 +182,10 @@ TEST_F(SlicerMaterials, OnlyChangesAreArguments) {
   pickColor(0, "#ABCDEF");
   EXPECT_EQ(arguments(), (Strings{"--material=Segment_1: color=#abcdef, material=spleen",
                                   "--materials=library"}));
-  EXPECT_EQ(seen(0), "#abcdef");
+  EXPECT_EQ(shownColor(0), "#abcdef");
   setMaterial(0, "vein");
   const Strings vein = {"--material=Segment_1: material=vein", "--materials=library"};
-  EXPECT_EQ(seen(0), "#4668b2") << "a new material replaces the color";
+  EXPECT_EQ(shownColor(0), "#4668b2") << "a new material replaces the color";
   EXPECT_EQ(arguments(), vein);
   setClip(0, false);
   setClip(0, true);
@@ -193,17 +193,17 @@ TEST_F(SlicerMaterials, OnlyChangesAreArguments) {
   EXPECT_FALSE(cell<QToolButton>(1, reset).isEnabled());
   cell<QToolButton>(0, reset).click();
   EXPECT_EQ(arguments(), (Strings{"--materials=library"}));
-  EXPECT_EQ(seen(0), "#963e2e");
+  EXPECT_EQ(shownColor(0), "#963e2e");
 }
 
-/// Texts of a scene are read neither as HTML nor as invalid colors.
+/// Texts of a scene are not interpreted as HTML, and invalid colors are ignored.
 TEST_F(SlicerMaterials, TextsOfASceneAreEscaped) {
   qFenestraMaterials hostile = knownMaterials();
   hostile.bySegment["Segment_1"].why = "<img src='file:///etc/passwd'>";
   table.setKnownMaterials(hostile);
   EXPECT_TRUE(cell<QComboBox>(0, material).toolTip().contains("&lt;img"));
   table.show({{"materials", "auto"}, {"material", "Segment_1: color=<b>red</b>"}});
-  EXPECT_EQ(seen(0), "#963e2e");
+  EXPECT_EQ(shownColor(0), "#963e2e");
   EXPECT_FALSE(cell<QToolButton>(0, color).toolTip().contains("<b>"));
 }
 
@@ -212,17 +212,17 @@ TEST_F(SlicerMaterials, UnknownSegmentKeepsTheVolumesColors) {
   palette.bySegment["Segment_3"].why = "by palette";
   table.setKnownMaterials(palette);
   choose("library");
-  EXPECT_EQ(seen(2), "#3366cc");
+  EXPECT_EQ(shownColor(2), "#3366cc");
   for (const char* word : {"auto", "none"}) {
     choose(word);
-    EXPECT_EQ(seen(2), "...") << word;
+    EXPECT_EQ(shownColor(2), "...") << word;
   }
 }
 
 TEST_F(SlicerMaterials, ClipFollowsTheAutomaticChoice) {
-  qFenestraMaterials standing = knownMaterials();
-  standing.bySegment["Segment_1"].isClipped = false;
-  table.setKnownMaterials(standing);
+  qFenestraMaterials unclipped = knownMaterials();
+  unclipped.bySegment["Segment_1"].isClipped = false;
+  table.setKnownMaterials(unclipped);
   EXPECT_FALSE(isClipped(0));
   setClip(0, true);
   EXPECT_EQ(arguments(), (Strings{"--material=Segment_1: clip=yes", "--materials=auto"}));
@@ -273,7 +273,7 @@ TEST_F(SlicerMaterials, ShownFlagsAreWrittenUnchanged) {
            {{"materials", "auto"}, {"material", "Segment_3: material=of a file"}},
            {{"material", "Segment_3: clip=no"}}}) { // without `materials`: left to the user
     table.show(flags);
-    EXPECT_EQ(taken(), flags);
+    EXPECT_EQ(takeFlags(), flags);
     EXPECT_EQ(chosen() == "hand", flags.count("material") > 0);
   }
   table.show({{"materials", "auto"}, {"material", "Segment_3: material=of a file"}});
@@ -289,9 +289,9 @@ TEST_F(SlicerMaterials, FlagsMayBeShownBeforeTheSegments) {
   early.show(flags);
   early.show({}); // nothing is passed without segments
   early.list(toPanelSegments(segments()));
-  Flags made;
-  early.take(made);
-  EXPECT_EQ(made, flags);
+  Flags written;
+  early.take(written);
+  EXPECT_EQ(written, flags);
 }
 
 TEST_F(SlicerMaterials, ChangesByScriptsMaySelectByName) {
@@ -304,9 +304,9 @@ TEST_F(SlicerMaterials, ChangesByScriptsMaySelectByName) {
 }
 
 /// Scene with the segments side by side, as the extension writes it for the renderer.
-class SlicerMaterialsPicture : public SlicerMaterials {
+class SlicerMaterialsImage : public SlicerMaterials {
 protected:
-  SlicerMaterialsPicture() {
+  SlicerMaterialsImage() {
     SlicerExport::Contents contents;
     contents.volume.type = "int16";
     contents.volume.size = {9, 9, 9};
@@ -355,7 +355,7 @@ protected:
   std::filesystem::path scene;
 };
 
-TEST_F(SlicerMaterialsPicture, EqualsThatOfTheCommandLineBitForBit) {
+TEST_F(SlicerMaterialsImage, EqualsThatOfTheCommandLineBitForBit) {
   const std::string none = renderByPanel();
   EXPECT_TRUE(none == renderByCommand("")) << "without options";
   choose("library");
@@ -379,26 +379,26 @@ TEST_F(SlicerMaterialsPicture, EqualsThatOfTheCommandLineBitForBit) {
 }
 
 /// The extension's scene contains the segments' colors, which unknown segments use.
-TEST_F(SlicerMaterialsPicture, UnknownSegmentHasItsOwnColor) {
+TEST_F(SlicerMaterialsImage, UnknownSegmentHasItsOwnColor) {
   choose("library");
   EXPECT_TRUE(renderByPanel() ==
               renderByCommand("--materials library --material 'Segment_3: color=#3366cc'"));
 }
 
-TEST_F(SlicerMaterialsPicture, PreviewAcceptsTheSameFlags) {
+TEST_F(SlicerMaterialsImage, PreviewAcceptsTheSameFlags) {
   setMaterial(0, "spleen");
   setMaterial(1, "vein");
   qFenestraPreview preview;
-  std::vector<qFenestraPreviewImage> pictures;
+  std::vector<qFenestraPreviewImage> images;
   QStringList refused;
   QObject::connect(&preview, &qFenestraPreview::refreshed,
-                   [&](const qFenestraPreviewImage& picture) { pictures.push_back(picture); });
+                   [&](const qFenestraPreviewImage& image) { images.push_back(image); });
   QObject::connect(&preview, &qFenestraPreview::refused,
                    [&](const QString& message) { refused << message; });
-  const auto picture = [&] {
-    pictures.clear();
+  const auto receiveImage = [&] {
+    images.clear();
     EXPECT_TRUE(
-        waitFor([&] { return !refused.isEmpty() || (!pictures.empty() && pictures.back().done); }));
+        waitFor([&] { return !refused.isEmpty() || (!images.empty() && images.back().done); }));
     EXPECT_TRUE(refused.isEmpty()) << refused.join('\n').toStdString();
     return readBytes(folder / "preview.png");
   };
@@ -409,11 +409,11 @@ TEST_F(SlicerMaterialsPicture, PreviewAcceptsTheSameFlags) {
     all << QString::fromStdString(argument);
   const QString path = QString::fromStdString(folder.path().string());
   preview.start(program, all, path);
-  const std::string first = picture();
+  const std::string first = receiveImage();
   preview.start(program, bare, path);
-  EXPECT_TRUE(picture() != first);
-  preview.change(qFenestraPreview::toJson(taken()));
-  EXPECT_TRUE(picture() == first);
+  EXPECT_TRUE(receiveImage() != first);
+  preview.change(qFenestraPreview::toJson(takeFlags()));
+  EXPECT_TRUE(receiveImage() == first);
 }
 
 TEST_F(SlicerMaterials, ResetRemovesAllChanges) {

@@ -26,11 +26,11 @@ namespace {
 using Kind = qFenestraOutcome::Kind;
 
 const QString program = FENESTRA_EXECUTABLE;
-const int timeoutMs = 30000 * static_cast<int>(testing::sampleDivisor()); ///< milliseconds
+const int timeoutMs = 30000 * static_cast<int>(testing::sampleDivisor());
 const int maxStopMs =
     1000 * static_cast<int>(testing::sampleDivisor()); ///< ms; 200 on an idle machine
 
-/// Runs the event loop until the condition holds; false after `longest`.
+/// Runs the event loop until the condition holds; false after timeoutMs.
 bool waitFor(const std::function<bool()>& condition) {
   QElapsedTimer watch;
   watch.start();
@@ -72,13 +72,13 @@ struct Ended {
 /// Records the signals of a queue.
 struct SignalRecorder {
   std::vector<int> started;
-  std::vector<double> parts;
+  std::vector<double> progress;
   std::vector<Ended> ended;
 
   explicit SignalRecorder(qFenestraQueue& queue) {
     QObject::connect(&queue, &qFenestraQueue::started, [this](int id) { started.push_back(id); });
     QObject::connect(&queue, &qFenestraQueue::progressed,
-                     [this](int, double part) { parts.push_back(part); });
+                     [this](int, double fraction) { progress.push_back(fraction); });
     QObject::connect(&queue, &qFenestraQueue::ended,
                      [this](int id, const qFenestraOutcome& outcome) {
                        ended.push_back({id, outcome});
@@ -100,8 +100,8 @@ TEST_F(SlicerProcess, QueueRunsJobsInOrder) {
     EXPECT_EQ(ended.outcome.kind, Kind::done) << ended.outcome.details.toStdString();
     EXPECT_TRUE(exists(QString("%1.png").arg(id).toUtf8().constData()));
   }
-  ASSERT_FALSE(recorder.parts.empty());
-  EXPECT_EQ(recorder.parts.back(), 1.0);
+  ASSERT_FALSE(recorder.progress.empty());
+  EXPECT_EQ(recorder.progress.back(), 1.0);
 }
 
 TEST_F(SlicerProcess, StopKeepsFinishedPassesAndSkipsWaitingJobs) {
@@ -110,7 +110,8 @@ TEST_F(SlicerProcess, StopKeepsFinishedPassesAndSkipsWaitingJobs) {
   queue.add(job(1, {"--samples", "3000000", "--output", "long.png"}));
   queue.add(job(2, {"--output", "never.png"}));
   queue.add(job(3, {"--samples", "1", "--output", "after.png"}));
-  ASSERT_TRUE(waitFor([&] { return !recorder.parts.empty() && recorder.parts.back() > 0.0; }));
+  ASSERT_TRUE(
+      waitFor([&] { return !recorder.progress.empty() && recorder.progress.back() > 0.0; }));
   queue.stop(2);
   queue.stop(1);
   QElapsedTimer watch;
@@ -169,17 +170,18 @@ TEST_F(SlicerProcess, KilledRendererIsReportedAsFailed) {
 
 /// Starts a shell script in place of the renderer, which handles the stop signal, and stops it.
 struct StoppedChild {
-  explicit StoppedChild(const TemporaryFolder& folder, const char* whenTold) {
+  explicit StoppedChild(const TemporaryFolder& folder, const char* onStop) {
     QObject::connect(&child, &qFenestraProgram::ended,
                      [this](const qFenestraOutcome& ended) { outcomes.push_back(ended); });
     bool ready = false;
-    const auto recorder = QObject::connect(&child, &qFenestraProgram::said, [&] { ready = true; });
+    const auto connection =
+        QObject::connect(&child, &qFenestraProgram::said, [&] { ready = true; });
     child.run(
         "/bin/sh",
-        {"-c", QString("trap '%1' TERM; echo ready; while :; do sleep 0.02; done").arg(whenTold)},
+        {"-c", QString("trap '%1' TERM; echo ready; while :; do sleep 0.02; done").arg(onStop)},
         QString::fromStdString(folder.path().string()));
     EXPECT_TRUE(waitFor([&] { return ready; }));
-    QObject::disconnect(recorder);
+    QObject::disconnect(connection);
     child.stop();
   }
   Kind kind() {
@@ -194,10 +196,10 @@ struct StoppedChild {
 /// Writing takes longer than any plausible timeout; meanwhile the window must respond.
 TEST_F(SlicerProcess, StopWaitsForARendererThatWrites) {
   StoppedChild stopped(folder, "sleep 2; echo picture >kept.png; exit 5");
-  bool answered = false;
-  QTimer::singleShot(0, [&] { answered = true; });
+  bool responded = false;
+  QTimer::singleShot(0, [&] { responded = true; });
   QCoreApplication::processEvents();
-  EXPECT_TRUE(answered);
+  EXPECT_TRUE(responded);
   EXPECT_FALSE(exists("kept.png")) << "Stop waits for the renderer";
   EXPECT_EQ(stopped.kind(), Kind::stopped);
   EXPECT_TRUE(exists("kept.png"));
@@ -239,36 +241,36 @@ TEST_F(SlicerProcess, ProgressIsReadFromValidTagsOnly) {
 }
 
 TEST_F(SlicerProcess, CapabilitiesListOptionsAndNamesOfTheRenderer) {
-  qFenestraCapabilityQuery question;
-  std::vector<qFenestraCapabilities> told;
-  QObject::connect(&question, &qFenestraCapabilityQuery::told,
-                   [&](const qFenestraCapabilities& abilities) { told.push_back(abilities); });
-  question.request(program);
-  ASSERT_TRUE(waitFor([&] { return !told.empty(); }));
-  EXPECT_TRUE(told[0].hasChoice("clip", "hole"));
-  EXPECT_FALSE(told[0].hasChoice("clip", "hol"));
-  EXPECT_TRUE(told[0].mentions("lights", "studio"));
-  EXPECT_FALSE(told[0].mentions("lights", "stud"));
-  EXPECT_TRUE(told[0].flags["holemargin"].text.startsWith("How much wider"));
-  EXPECT_TRUE(told[0].flags["holemargin"].choices.isEmpty());
-  EXPECT_EQ(told[0].hasTurntable(), told[0].turntable.contains("--frames"));
+  qFenestraCapabilityQuery query;
+  std::vector<qFenestraCapabilities> results;
+  QObject::connect(&query, &qFenestraCapabilityQuery::told,
+                   [&](const qFenestraCapabilities& one) { results.push_back(one); });
+  query.request(program);
+  ASSERT_TRUE(waitFor([&] { return !results.empty(); }));
+  EXPECT_TRUE(results[0].hasChoice("clip", "hole"));
+  EXPECT_FALSE(results[0].hasChoice("clip", "hol"));
+  EXPECT_TRUE(results[0].mentions("lights", "studio"));
+  EXPECT_FALSE(results[0].mentions("lights", "stud"));
+  EXPECT_TRUE(results[0].flags["holemargin"].text.startsWith("Distance from the focus"));
+  EXPECT_TRUE(results[0].flags["holemargin"].choices.isEmpty());
+  EXPECT_EQ(results[0].hasTurntable(), results[0].turntable.contains("--frames"));
 
   qFenestraCapabilityQuery missing;
   QObject::connect(&missing, &qFenestraCapabilityQuery::told,
-                   [&](const qFenestraCapabilities& abilities) { told.push_back(abilities); });
+                   [&](const qFenestraCapabilities& one) { results.push_back(one); });
   missing.request("/nowhere/fenestra");
-  ASSERT_TRUE(waitFor([&] { return told.size() == 2; }));
-  EXPECT_TRUE(told[1].flags.isEmpty());
-  EXPECT_FALSE(told[1].hasTurntable());
+  ASSERT_TRUE(waitFor([&] { return results.size() == 2; }));
+  EXPECT_TRUE(results[1].flags.isEmpty());
+  EXPECT_FALSE(results[1].hasTurntable());
   EXPECT_TRUE(qFenestraCapabilities::parseFlags("no description").isEmpty());
 }
 
 TEST_F(SlicerProcess, EnvironmentOfAChildOmitsLibraryPaths) {
-  QProcessEnvironment slicers;
-  slicers.insert("LD_LIBRARY_PATH", "/opt/slicer/lib");
-  slicers.insert("QT_PLUGIN_PATH", "/opt/slicer/plugins");
-  slicers.insert("HOME", "/home/somebody");
-  const QProcessEnvironment environment = qFenestraProgram::removeLibraryPaths(slicers);
+  QProcessEnvironment inherited;
+  inherited.insert("LD_LIBRARY_PATH", "/opt/slicer/lib");
+  inherited.insert("QT_PLUGIN_PATH", "/opt/slicer/plugins");
+  inherited.insert("HOME", "/home/somebody");
+  const QProcessEnvironment environment = qFenestraProgram::removeLibraryPaths(inherited);
   EXPECT_EQ(environment.keys(), QStringList{"HOME"});
 }
 
@@ -283,35 +285,35 @@ TEST_F(SlicerProcess, ChildEndsWithItsObjectAndWithItsParent) {
   }
   EXPECT_NE(::kill(static_cast<pid_t>(id), 0), 0);
 
-  int tell[2];
-  ASSERT_EQ(::pipe(tell), 0);
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
   const pid_t parent = ::fork();
   if (parent == 0) { // simulates a crash of Slicer
     qFenestraProgram child;
     child.run(program, job(1, {"--samples", "100000000"}).arguments, path());
     child.waitForStarted();
     const pid_t grandchild = static_cast<pid_t>(child.processId());
-    [[maybe_unused]] const auto written = ::write(tell[1], &grandchild, sizeof grandchild);
+    [[maybe_unused]] const auto written = ::write(ends[1], &grandchild, sizeof grandchild);
     ::kill(::getpid(), SIGKILL);
   }
   pid_t orphan = 0;
-  ASSERT_EQ(::read(tell[0], &orphan, sizeof orphan), static_cast<ssize_t>(sizeof orphan));
-  ::close(tell[0]);
-  ::close(tell[1]);
+  ASSERT_EQ(::read(ends[0], &orphan, sizeof orphan), static_cast<ssize_t>(sizeof orphan));
+  ::close(ends[0]);
+  ::close(ends[1]);
   ::waitpid(parent, nullptr, 0);
   ASSERT_GT(orphan, 0);
-  const auto gone = [&] {
+  const auto hasEnded = [&] {
     QFile status(QString("/proc/%1/stat").arg(orphan)); // no process, or a zombie, has ended
     return !status.open(QIODevice::ReadOnly) || status.readAll().contains(") Z ");
   };
-  EXPECT_TRUE(waitFor(gone));
+  EXPECT_TRUE(waitFor(hasEnded));
 }
 
 class SlicerPreview : public SlicerProcess {
 protected:
   SlicerPreview() {
     QObject::connect(&preview, &qFenestraPreview::refreshed,
-                     [this](const qFenestraPreviewImage& picture) { pictures.push_back(picture); });
+                     [this](const qFenestraPreviewImage& image) { images.push_back(image); });
     QObject::connect(&preview, &qFenestraPreview::refused,
                      [this](const QString& message) { refusals << message; });
     QObject::connect(&preview, &qFenestraPreview::ended,
@@ -324,11 +326,11 @@ protected:
                   path());
   }
   bool waitForDone() {
-    return waitFor([this] { return !pictures.empty() && pictures.back().done; });
+    return waitFor([this] { return !images.empty() && images.back().done; });
   }
 
   qFenestraPreview preview;
-  std::vector<qFenestraPreviewImage> pictures;
+  std::vector<qFenestraPreviewImage> images;
   QStringList refusals;
   std::vector<qFenestraOutcome> outcomes;
 };
@@ -336,19 +338,19 @@ protected:
 TEST_F(SlicerPreview, FastChangesAreSentAsOne) {
   start("8");
   ASSERT_TRUE(waitForDone());
-  EXPECT_EQ(pictures.back().samples, 8);
-  EXPECT_EQ(pictures.back().files, QStringList{"p.png"});
+  EXPECT_EQ(images.back().samples, 8);
+  EXPECT_EQ(images.back().files, QStringList{"p.png"});
   EXPECT_TRUE(exists("p.png"));
-  pictures.clear();
+  images.clear();
   // Of fast changes, one is sent, with the last value of each flag.
   for (const char* view : {"left", "right", "superior"}) {
     preview.change({{"view", view}});
     preview.change({{"samples", 4}});
   }
   ASSERT_TRUE(waitForDone());
-  EXPECT_EQ(pictures.back().samples, 4);
-  for (const qFenestraPreviewImage& picture : pictures)
-    EXPECT_LE(picture.samples, 4);
+  EXPECT_EQ(images.back().samples, 4);
+  for (const qFenestraPreviewImage& image : images)
+    EXPECT_LE(image.samples, 4);
   EXPECT_TRUE(refusals.isEmpty());
 }
 
@@ -358,7 +360,7 @@ TEST_F(SlicerPreview, RefusedChangeKeepsThePreviewRunning) {
   preview.change({{"focus", "Femur"}});
   ASSERT_TRUE(waitFor([this] { return !refusals.isEmpty(); }));
   EXPECT_TRUE(refusals[0].contains("--focus")) << refusals[0].toStdString();
-  pictures.clear();
+  images.clear();
   preview.change({{"view", "left"}});
   ASSERT_TRUE(waitForDone());
   EXPECT_TRUE(preview.running());
@@ -366,7 +368,7 @@ TEST_F(SlicerPreview, RefusedChangeKeepsThePreviewRunning) {
 
 TEST_F(SlicerPreview, StopReturnsImmediately) {
   start("100000000");
-  ASSERT_TRUE(waitFor([this] { return !pictures.empty(); }));
+  ASSERT_TRUE(waitFor([this] { return !images.empty(); }));
   QElapsedTimer watch;
   watch.start();
   preview.stop();
@@ -383,7 +385,7 @@ TEST_F(SlicerPreview, FilesAreKeptUntilTheChildHasEnded) {
   const std::weak_ptr<int> held = files;
   preview.start(program, {"volume.nrrd", "--size=16x16", "--samples=100000000", "--output=p.png"},
                 path(), std::move(files));
-  ASSERT_TRUE(waitFor([this] { return !pictures.empty(); }));
+  ASSERT_TRUE(waitFor([this] { return !images.empty(); }));
   preview.stop();
   EXPECT_FALSE(held.expired());
   EXPECT_TRUE(waitFor([&] { return held.expired(); }));

@@ -10,8 +10,8 @@ namespace fenestra::testing {
 /// Its radius is about 2 mm; a third of the incident light passes.
 inline TestScene makeClumps(const Rgb& dark, const Rgb& bright, double g) {
   Grid grid = makeCenteredGrid({5, 4, 6}, {0.5, 0.7, 0.4});
-  const Affine turn(makeRotation(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
-  grid = Grid(grid.size, turn * grid.indexToWorld);
+  const Affine rotation(makeRotation(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
+  grid = Grid(grid.size, rotation * grid.indexToWorld);
   Random random(91, 0, 0);
   TestScene scene{makeVolume(grid, [&](const Vec3&) { return random.uniform(); }),
                   {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(0.3, 0.1), makeKnot(0.45, 6.0),

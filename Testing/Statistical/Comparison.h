@@ -1,6 +1,6 @@
 #pragma once
-// Renders one combination of the matrix with the product and with the oracle, and computes the
-// significance of their difference at three scales: pixels, tiles of 4 x 4 pixels, complete image.
+// Renders a combination of the matrix with the product (Fenestra) and with the oracle, and tests
+// their difference at three scales: pixels, tiles of 4 x 4 pixels, complete image.
 
 #include "Matrix.h"
 #include "Oracle/Estimates.h"

@@ -225,9 +225,9 @@ TEST(SlabOfComponents, ClipRemovesOnlyClippedComponents) {
   };
   const auto left = [&](std::size_t i) { return 0.1 * upperWeight(i); };
   // Trapezoidal rule: the plane halves the interval between voxels 3 and 4.
-  const double kept = sum(0, 4, all) + (all(4) - all(3)) / 8.0;
+  const double remaining = sum(0, 4, all) + (all(4) - all(3)) / 8.0;
   const double removed = sum(4, 8, left) - (left(4) - left(3)) / 8.0;
-  expectTransmittance(scene, kept + removed, 1300);
+  expectTransmittance(scene, remaining + removed, 1300);
 }
 
 // ---- furnace

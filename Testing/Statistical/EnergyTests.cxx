@@ -38,19 +38,19 @@ RgbEstimate estimateScatteredLight(TestScene& scene, const Vec3& light, std::uin
   RgbEstimate sum;
   Rgb variance = Rgb::Zero();
   for (int part = 0; part < rows * columns; ++part) {
-    Rgb seen[2];
+    Rgb pair[2];
     for (int i = 0; i < 2; ++i) {
       const std::uint64_t imageSeed = seed + static_cast<std::uint64_t>(2 * part + i);
       Random random(imageSeed, 0, 1);
       const Vec2 u = random.uniform2();
       const Vec3 direction = sampleUniformSphere(
           {(part / columns + u.x()) / rows, (part % columns + u.y()) / columns});
-      seen[i] =
+      pair[i] =
           estimateScattered(scene, light, -frame.toWorld(direction), scaleSamples(12UL), imageSeed)
               .mean;
     }
-    sum.mean += 0.5 * (seen[0] + seen[1]);
-    variance += 0.25 * (seen[0] - seen[1]).square();
+    sum.mean += 0.5 * (pair[0] + pair[1]);
+    variance += 0.25 * (pair[0] - pair[1]).square();
   }
   sum.error = variance.sqrt();
   return sum * (4.0 * pi / (rows * columns));

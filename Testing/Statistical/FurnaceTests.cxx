@@ -10,7 +10,7 @@
 namespace fenestra::testing::FurnaceTests {
 namespace {
 
-enum class MediumKind { homogeneous, heterogeneous, makeSpikes };
+enum class MediumKind { homogeneous, heterogeneous, spikes };
 enum class ClipKind { none, plane, cutaway, surface };
 
 using Case = std::tuple<MediumKind, Projection, ClipKind, double, bool>;
@@ -74,8 +74,8 @@ class Furnace : public ::testing::TestWithParam<Case> {};
 TEST_P(Furnace, RadianceIsOne) {
   const auto [mediumKind, projection, clipKind, g, isCropped] = GetParam();
   TestScene scene{makeMediumVolume(mediumKind),
-                  mediumKind == MediumKind::makeSpikes ? makeSpikes()
-                                                       : makeLinearTransfer(0.4, Rgb::Ones()),
+                  mediumKind == MediumKind::spikes ? makeSpikes()
+                                                   : makeLinearTransfer(0.4, Rgb::Ones()),
                   {EnvironmentLight{}},
                   {},
                   24,
@@ -103,12 +103,11 @@ TEST_P(Furnace, RadianceIsOne) {
 
 INSTANTIATE_TEST_SUITE_P(
     Everywhere, Furnace,
-    ::testing::Combine(::testing::Values(MediumKind::homogeneous, MediumKind::heterogeneous,
-                                         MediumKind::makeSpikes),
-                       ::testing::Values(Projection::orthographic, Projection::perspective),
-                       ::testing::Values(ClipKind::none, ClipKind::plane, ClipKind::cutaway,
-                                         ClipKind::surface),
-                       ::testing::Values(0.0, 0.7), ::testing::Values(false)));
+    ::testing::Combine(
+        ::testing::Values(MediumKind::homogeneous, MediumKind::heterogeneous, MediumKind::spikes),
+        ::testing::Values(Projection::orthographic, Projection::perspective),
+        ::testing::Values(ClipKind::none, ClipKind::plane, ClipKind::cutaway, ClipKind::surface),
+        ::testing::Values(0.0, 0.7), ::testing::Values(false)));
 
 INSTANTIATE_TEST_SUITE_P(Cropped, Furnace,
                          ::testing::Combine(::testing::Values(MediumKind::heterogeneous),

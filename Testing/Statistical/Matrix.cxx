@@ -50,14 +50,14 @@ Combination makeCombination(int index) {
   constexpr int counts[] = {1, 3, 8};
   const int count = counts[next(3)];
   c.segments = static_cast<SegmentFactor>(next(3));
-  c.haveSoftEdges = next(2) == 0;
+  c.hasSoftSegments = next(2) == 0;
   const bool isExtra = index >= shortCount && index % 3 != 0;
   c.segmentCount = index % 2 == 1 || isExtra ? count : 0;
-  c.areMedia = (next(2) == 0 && c.segmentCount > 0) || isExtra;
-  if (next(2) == 0 && c.areMedia) // surfaces of several kinds
+  c.hasSegmentMedia = (next(2) == 0 && c.segmentCount > 0) || isExtra;
+  if (next(2) == 0 && c.hasSegmentMedia) // surfaces of several kinds
     c.isHybrid = true;
   c.isCoated = isCoated && c.isHybrid;
-  c.haveInterfaces = next(3) == 0 && c.areMedia && c.isHybrid;
+  c.hasInterfaces = next(3) == 0 && c.hasSegmentMedia && c.isHybrid;
   if (index % 4 == 1 ||
       index % 4 == 2) { // the others stay simple, which shows errors of other factors best
     c.edge = static_cast<EdgeFactor>(isSoftCut ? 2 + edge % 2 : edge);
@@ -388,9 +388,9 @@ std::string describe(const Combination& c) {
   if (c.clip > ClipFactor::plane && c.offset != 0.0)
     text << (c.offset < 0.0 ? ", nearer" : ", deeper");
   if (c.segmentCount > 0)
-    text << ", " << c.segmentCount << (c.haveSoftEdges ? " soft " : " hard ")
-         << name(segments, c.segments) << (c.areMedia ? " media" : " tints")
-         << (c.haveInterfaces ? " with interfaces" : "");
+    text << ", " << c.segmentCount << (c.hasSoftSegments ? " soft " : " hard ")
+         << name(segments, c.segments) << (c.hasSegmentMedia ? " media" : " tints")
+         << (c.hasInterfaces ? " with interfaces" : "");
   text << name(styles, c.style) << (c.isCropped ? ", cropped" : "") << " | "
        << name(lights, c.light) << " | " << c.g << " | " << name(albedos, c.albedo) << " | "
        << name(transfers, c.transfer) << (c.isHybrid ? c.isCoated ? ", coated" : ", hybrid" : "")

@@ -61,9 +61,9 @@ struct Combination {
   double offset = 0.0; ///< of the clip, mm
   int segmentCount = 0;
   SegmentFactor segments{};
-  bool haveSoftEdges = false;  ///< segments have soft edges
-  bool areMedia = false;       ///< segments have media of their own; false: only albedos
-  bool haveInterfaces = false; ///< some segments' interfaces are surfaces
+  bool hasSoftSegments = false; ///< segments have soft edges
+  bool hasSegmentMedia = false; ///< segments have media of their own; false: only albedos
+  bool hasInterfaces = false;   ///< some segments' interfaces are surfaces
 };
 
 /// Numbers of combinations of the short and of the long version of the suite.

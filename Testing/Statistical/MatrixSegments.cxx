@@ -87,7 +87,7 @@ Component makeComponent(const Combination& c, std::size_t number, const Transfer
     transfer.shading->gamma = volume.shading->gamma; // one for all components
     transfer.shading->diffuse = uniform(generator, 0.0, 1.0);
   }
-  if (c.haveInterfaces && number % 2 == 1)
+  if (c.hasInterfaces && number % 2 == 1)
     component.interfaceWeight = uniform(generator, 0.2, 1.0);
   return component;
 }
@@ -105,16 +105,16 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
   std::vector<LabelWeights::Part> parts;
   Tint tint{{}, {std::nullopt}};
   Mixture mixture{{}, {{volume}}};
-  oracle::ComponentsDescription all{{}, {{volume}}, !c.areMedia};
+  oracle::ComponentsDescription all{{}, {{volume}}, !c.hasSegmentMedia};
   for (const Ball& ball : makeBalls(c, generator)) {
     const std::size_t number = all.components.size();
-    const Mask mask = makeBallMask(ball, labels, c.haveSoftEdges);
+    const Mask mask = makeBallMask(ball, labels, c.hasSoftSegments);
     parts.push_back({mask, ball.priority, static_cast<std::uint8_t>(number)});
     all.segments.push_back({mask, ball.priority, number});
     Component component{volume};
     if (number == 2) { // has the volume's own medium
       tint.albedo.emplace_back();
-    } else if (c.areMedia) {
+    } else if (c.hasSegmentMedia) {
       component = makeComponent(c, number, volume, generator);
     } else {
       component.transfer.albedo = makeColors(volume.extinction, generator);
@@ -126,7 +126,7 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
   }
   const auto weights = std::make_shared<const LabelWeights>(makeLabelWeights(parts));
   tint.weights = mixture.weights = weights;
-  if (c.areMedia)
+  if (c.hasSegmentMedia)
     scene.product.mixture = std::move(mixture);
   else
     scene.product.tint = std::move(tint);

@@ -1,9 +1,9 @@
 // Mutation testing: the suite of MatrixTests must find each error of Mutations/mutations.json. One
 // build contains all of them (Mutations/ApplyMutations.cmake). Each is switched on for one
 // combination after another, until the product's image differs from the oracle's as significantly
-// as the suite requires. An entry's "transport" names the integrator in which it shows: the SIMD
-// one by default, "readable": the scalar one, or "both". Entries with "shows": "estimated error"
-// affect no mean; they must show in the images' standard errors (ErrorRatio.h).
+// as the suite requires. An entry's "integrator" is the one in which it shows: "simd" (the
+// default), "scalar" or "both". Entries with "shows": "estimated error" affect no mean; they must
+// show in the images' standard errors (ErrorRatio.h).
 
 #include "Comparison.h"
 #include "ErrorRatio.h"
@@ -32,7 +32,7 @@ struct Mutation {
 
 /// Integrators in which an entry of mutations.json shows.
 std::vector<Integrator> parseIntegrators(const nlohmann::json& entry) {
-  const std::string named = entry.value("transport", "simd");
+  const std::string named = entry.value("integrator", "simd");
   if (named == "both")
     return {Integrator::simd, Integrator::scalar};
   return {named == "simd" ? Integrator::simd : Integrator::scalar};
@@ -51,9 +51,9 @@ std::vector<Mutation> readMutations() {
     if (isSelected(entry.at("name")))
       for (const Integrator integrator : parseIntegrators(entry)) {
         std::string why = entry.at("why");
-        why += entry.value("transport", "") != "both" ? ""
-               : integrator == Integrator::simd       ? " (SIMD integrator)"
-                                                      : " (scalar integrator)";
+        why += entry.value("integrator", "") != "both" ? ""
+               : integrator == Integrator::simd        ? " (SIMD integrator)"
+                                                       : " (scalar integrator)";
         mutations.push_back(
             {entry.at("name"), why, integrator, entry.value("shows", "") == "estimated error"});
       }

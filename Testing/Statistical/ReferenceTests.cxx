@@ -74,11 +74,11 @@ bool hasReferences() {
   return std::filesystem::exists(std::string(FENESTRA_REFERENCE) + "/S1.arguments");
 }
 
-/// Appends a row to references.csv, if a report is requested; `who`: "renderer,scene".
-void appendRecord(const std::string& who, const ZStatistics& z) {
+/// Appends a row to references.csv, if a report is requested; `labels`: "renderer,scene".
+void appendRecord(const std::string& labels, const ZStatistics& z) {
   if (const std::optional<std::filesystem::path> folder = reportFolder())
     std::ofstream(*folder / "references.csv", std::ios::app)
-        << std::setprecision(3) << who << ',' << z.count << ',' << z.mean << ',' << z.deviation
+        << std::setprecision(3) << labels << ',' << z.count << ',' << z.mean << ',' << z.deviation
         << ',' << z.imageMean[0] << ',' << z.imageMean[1] << ',' << z.imageMean[2] << '\n';
 }
 

@@ -32,7 +32,7 @@ inline RgbEstimate estimateRgb(const Film& film) {
 
 /// Expects |mean - expected| <= 4 standard errors + `relativeError` * expected in every channel
 /// (`relativeError`: that of `expected`), and a standard error <= `maxRelativeError` * expected. A
-/// bias of 6 `maxRelativeError` * expected is then found almost certainly.
+/// bias of 6 `maxRelativeError` * expected is then detected almost certainly.
 inline void expectMean(const RgbEstimate& estimate, const Rgb& expected, double maxRelativeError,
                        double relativeError = 0.0) {
   for (int c = 0; c < 3; ++c) {

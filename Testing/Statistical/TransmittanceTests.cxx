@@ -41,8 +41,8 @@ Volume makeRamp() {
 
 /// Rotated grid of unequal spacing.
 Volume rotateGrid(Volume volume) {
-  const Affine turn(makeRotation(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
-  volume.grid = Grid(volume.grid.size, turn * volume.grid.indexToWorld);
+  const Affine rotation(makeRotation(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
+  volume.grid = Grid(volume.grid.size, rotation * volume.grid.indexToWorld);
   return volume;
 }
 

@@ -45,16 +45,16 @@ struct Place {
   Affine map;
 };
 
-class Placed : public ::testing::TestWithParam<Place> {};
+class PlacedVolume : public ::testing::TestWithParam<Place> {};
 
-TEST_P(Placed, ImageIsUnchanged) {
+TEST_P(PlacedVolume, ImageIsUnchanged) {
   const TestScene scene = makeBumpScene();
   const TestScene elsewhere = transformScene(scene, GetParam().map);
   const int samples = scaleSamples(400);
   expectSameImage(renderScene(scene, samples, 1).film, renderScene(elsewhere, samples, 2).film);
 }
 
-TEST_P(Placed, IndexRoundTripKeepsVoxelPrecision) {
+TEST_P(PlacedVolume, IndexRoundTripKeepsVoxelPrecision) {
   // Rounding error, in voxels, of a few operations with coordinates of magnitude `far`: half an ulp
   // each. At 1e6 mm and 1 mm voxels: 1e-9 of a voxel.
   const Grid grid = transformScene(makeBumpScene(), GetParam().map).volume.grid;
@@ -68,7 +68,7 @@ TEST_P(Placed, IndexRoundTripKeepsVoxelPrecision) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Places, Placed,
+    Places, PlacedVolume,
     ::testing::Values(Place{"far", Affine(makeTranslation({1e6, -1e6, 1e6}))},
                       Place{"farther", Affine(makeTranslation({-1e9, 7e8, 1e9}))},
                       Place{"rotated", makeRigid(1.0)},

@@ -107,7 +107,7 @@ TEST(SurfaceEnds, DirectionIsUnitAndWeightBounded) {
   constexpr double greatestWeight = 25.0 * (1.0 + 1e-9);
   constexpr double most = std::numeric_limits<double>::max();
   const Vec2 strengths[] = {{1, 0}, {0, 1}, {0.9, 0.2}, {0, 0}, {1e-300, 1e-300}, {1e300, 1e300}};
-  int drawn = 0;
+  int sampled = 0;
   for (const double cosine : {1.0, 0.5, 1e-3, 1e-8, 1e-17, 1e-300, 0.0})
     for (const double power : {0.0, 1e-3, 10.0, 1e4, 1e8, 1e16, 1e30, 1e300, most})
       for (const Vec2& strength : strengths)
@@ -123,10 +123,10 @@ TEST(SurfaceEnds, DirectionIsUnitAndWeightBounded) {
               ASSERT_TRUE((sample.weight >= 0.0).all() && (sample.weight <= greatestWeight).all())
                   << sample.weight << ", " << cosine << " " << power;
               ASSERT_TRUE(sample.pdf > 0.0 || sample.weight.maxCoeff() == 0.0);
-              drawn += sample.pdf > 0.0 ? 1 : 0;
+              sampled += sample.pdf > 0.0 ? 1 : 0;
             }
         }
-  EXPECT_GT(drawn, 50000) << "most samples must have a direction";
+  EXPECT_GT(sampled, 50000) << "most samples must have a direction";
 }
 
 // ---- lights
@@ -225,7 +225,7 @@ TEST(LightEnds, DirectionIsUnitAndContributionFinite) {
   const Vec3 points[] = {{0, 0, 1},   {0.5, 0.5, 0},       {0, 0, -1},        {0, 0, 0},
                          {-1, -1, 0}, {1, 0, 1e-300},      {0, 0, 5e-324},    {1e-200, 0, 1e-200},
                          {0, 0, 1e9}, {0, 1e-160, 1e-161}, {1e6, 1e6, 1e-300}};
-  int drawn = 0;
+  int sampled = 0;
   for (const std::vector<Light>& lights : makeLightings()) {
     const LightSet set(lights, unitGrid, makeCamera());
     for (const Vec3& point : points)
@@ -234,7 +234,7 @@ TEST(LightEnds, DirectionIsUnitAndContributionFinite) {
           const std::optional<LightSample> sample = set.sample(point, choice, u);
           if (!sample)
             continue;
-          ++drawn;
+          ++sampled;
           ASSERT_NEAR(sample->direction.norm(), 1.0, 1e-12) << point;
           ASSERT_GT(sample->distance, 0.0);
           ASSERT_GT(sample->pdf, 0.0);
@@ -243,7 +243,7 @@ TEST(LightEnds, DirectionIsUnitAndContributionFinite) {
           ASSERT_TRUE(allFinite(sample->radiance / sample->pdf)) << point;
         }
   }
-  EXPECT_GT(drawn, 20000);
+  EXPECT_GT(sampled, 20000);
 }
 
 TEST(LightEnds, LightInVolumeCenterLeavesUsableProbabilities) {

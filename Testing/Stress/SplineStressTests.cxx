@@ -183,20 +183,20 @@ TEST(SplineStress, CollinearSitesGiveTheirLeastSquaresLine) {
           SplineData data;
           long double n = 0, t = 0, tt = 0, z = 0, tz = 0;
           for (int i = 0; i < count; ++i) {
-            const double place = radius * (2.0 * i / (count - 1) - 1.0);
-            data.add(Vec2(origin, -origin) + place * along, uniform(random, 0, 500));
+            const double position = radius * (2.0 * i / (count - 1) - 1.0);
+            data.add(Vec2(origin, -origin) + position * along, uniform(random, 0, 500));
             const long double value = data.values.back();
-            n += 1, t += place, tt += place * place, z += value, tz += place * value;
+            n += 1, t += position, tt += position * position, z += value, tz += position * value;
           }
           const long double slope = (n * tz - t * z) / (n * tt - t * t);
           const ThinPlateSpline spline = data.spline(smoothing);
-          for (const double place : {0.0, 0.3 * radius, -radius, 1e4})
-            for (const double aside : {0.0, radius, -1e4}) {
-              const auto line = static_cast<double>((z - slope * t) / n + slope * place);
-              const Vec2 x = Vec2(origin, -origin) + place * along + aside * across;
+          for (const double position : {0.0, 0.3 * radius, -radius, 1e4})
+            for (const double offset : {0.0, radius, -1e4}) {
+              const auto line = static_cast<double>((z - slope * t) / n + slope * position);
+              const Vec2 x = Vec2(origin, -origin) + position * along + offset * across;
               // Rounding of the coordinates of sites and x, and of the slope.
-              const double reach = std::hypot(place, aside);
-              const double rounded = 1e-15 * (origin * (1.0 + reach / radius) + reach);
+              const double distance = std::hypot(position, offset);
+              const double rounded = 1e-15 * (origin * (1.0 + distance / radius) + distance);
               ASSERT_NEAR(spline(x), line,
                           1e-9 * (data.range() + std::abs(line)) + data.range() / radius * rounded)
                   << count << " sites in " << radius << " mm at " << origin << ", p " << smoothing;
@@ -290,13 +290,13 @@ TEST(SplineStress, IsInvariantToRotation) {
     for (const double smoothing : smoothings)
       for (const double angle : {1e-8, 0.7, 0.5 * pi, 3.0}) {
         const SplineData data = makeScattered(random, 50, 40.0, {0, 0}, 40.0);
-        const auto turn = [&](const Vec2& x) -> Vec2 {
+        const auto rotate = [&](const Vec2& x) -> Vec2 {
           const double c = std::cos(angle), s = std::sin(angle);
           return {c * x.x() - s * x.y() + origin, s * x.x() + c * x.y() - origin};
         };
-        // At 1e6 mm, coordinates are rounded by 1e-10 mm; slopes turn that into errors of f.
+        // At 1e6 mm, coordinates are rounded by 1e-10 mm; slopes convert that into errors of f.
         const double bound = origin > 1e5 ? 1e-7 : 1e-9;
-        expectSame(data, smoothing, mapSites(data, turn), smoothing, turn, bound);
+        expectSame(data, smoothing, mapSites(data, rotate), smoothing, rotate, bound);
       }
 }
 

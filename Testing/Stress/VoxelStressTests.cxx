@@ -13,22 +13,22 @@ namespace {
 /// Geometry of 4x4x4 voxels of 1 mm.
 const FileGeometry cube{.size = {4, 4, 4}};
 
-/// Ordinary values 0 to 94 (steps of 1.5 if the type has fractions), and the values `odd` among
+/// Ordinary values 0 to 94 (steps of 1.5 if the type has fractions), and the values `unusual` among
 /// them.
 template <typename T>
-std::vector<T> makeSamples(const std::vector<T>& odd) {
+std::vector<T> makeSamples(const std::vector<T>& unusual) {
   std::vector<T> samples(64);
   for (std::size_t i = 0; i < samples.size(); ++i)
     samples[i] = static_cast<T>(1.5 * static_cast<double>(i * 29 % 64));
-  for (std::size_t i = 0; i < odd.size(); ++i)
-    samples[7 + 5 * i] = odd[i];
+  for (std::size_t i = 0; i < unusual.size(); ++i)
+    samples[7 + 5 * i] = unusual[i];
   return samples;
 }
 
 /// Documented replacement: NaN and -infinity become the minimum finite value, +infinity the
 /// maximum; values beyond float are clamped to its range.
 template <typename T>
-std::vector<float> replaceOdd(const std::vector<T>& samples) {
+std::vector<float> replaceUnusual(const std::vector<T>& samples) {
   std::vector<long double> finite;
   for (const T x : samples)
     if (std::isfinite(static_cast<long double>(x)))
@@ -66,10 +66,10 @@ Film renderFile(const std::filesystem::path& volume, const std::optional<std::st
 
 /// Compares the stored voxels and the images, with a given and with the default transfer function.
 template <typename T>
-void expectReplaced(const std::vector<T>& odd) {
+void expectReplaced(const std::vector<T>& unusual) {
   const TemporaryFolder folder;
-  const std::vector<T> samples = makeSamples(odd);
-  const std::vector<float> expected = replaceOdd(samples);
+  const std::vector<T> samples = makeSamples(unusual);
+  const std::vector<float> expected = replaceUnusual(samples);
   writeFile(folder / "odd.nrrd", samples, cube);
   writeFile(folder / "easy.nrrd", expected, cube);
   const Volume volume = readVolume(folder / "odd.nrrd");
@@ -107,7 +107,7 @@ std::vector<T> makeExtremes() {
           static_cast<T>(Limits::lowest() + 1)};
 }
 
-TEST(OddVoxels, ExtremeIntegersAreKeptOrRounded) {
+TEST(UnusualVoxels, ExtremeIntegersAreKeptOrRounded) {
   expectReplaced<std::int8_t>(makeExtremes<std::int8_t>());
   expectReplaced<std::uint8_t>(makeExtremes<std::uint8_t>());
   expectReplaced<std::int16_t>(makeExtremes<std::int16_t>());
@@ -135,16 +135,16 @@ void expectFloatingReplaced() {
   expectReplaced<T>({T(1e-30), nan});
 }
 
-TEST(OddVoxels, NonFiniteFloatsAreReplaced) {
+TEST(UnusualVoxels, NonFiniteFloatsAreReplaced) {
   expectFloatingReplaced<float>();
 }
 
-TEST(OddVoxels, NonFiniteDoublesAreReplaced) {
+TEST(UnusualVoxels, NonFiniteDoublesAreReplaced) {
   expectFloatingReplaced<double>();
   expectReplaced<double>({1e-310, 1e-40, -1e-40, 1e39, -1e300});
 }
 
-TEST(OddVoxels, NoFiniteVoxelIsErrorOneIsConstantVolume) {
+TEST(UnusualVoxels, NoFiniteVoxelIsErrorOneIsConstantVolume) {
   const TemporaryFolder folder;
   const double nan = std::nan("");
   writeFile(folder / "none.nrrd", std::vector<double>(64, nan), cube);

@@ -150,7 +150,7 @@ TEST(Contrast, DesaturatesNoMoreThanNecessary) {
 
 /// Purple around gray-blue: muting improves the contrast for normal vision, but makes the two
 /// indistinguishable for color-blind viewers.
-TEST(Contrast, DoesNotReduceContrastForTheColorBlind) {
+TEST(Contrast, DoesNotReduceContrastForColorBlindViewers) {
   const auto decodeAlbedo = [](const Rgb& encoded) { return toAlbedo(decodeSrgb(encoded), 0.0); };
   const TransferFunction transfer =
       makeTransfer(decodeAlbedo(Rgb(0.82, 0.486, 0.918)), decodeAlbedo(Rgb(0.435, 0.506, 0.545)));

@@ -135,7 +135,7 @@ TEST(ErrorEstimate, OfOneWindowIsUnbiased) {
   EXPECT_NEAR(estimated / exact, 1.0, 0.15) << "four standard errors";
 }
 
-/// The choice of a pixel's window must not depend on that pixel's noise: CandidateScorer omits it.
+/// The choice of a pixel's window must not depend on its noise: CandidateScorer leaves it out.
 TEST(ErrorEstimate, OfTheChosenWindowsIsUnbiased) {
   const TestImage subject{.width = 192, .height = 160, .unexplained = 0.6, .noise = 1.0};
   double estimated = 0.0, exact = 0.0;

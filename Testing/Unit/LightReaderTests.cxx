@@ -131,7 +131,7 @@ TEST(LightReader, ErrorNamesTheField) {
   refuse(R"({"type": "environment", "radiance": [1, 1, 1e35]})", "lights[1].radiance[2]");
   refuse(R"({"type": "environment", "radiance": 1})",
          "lights[1].radiance: must be one number with \"color\", and three numbers without");
-  refuse(R"({"type": "environment", "colour": 1})", "lights[1]: unknown key \"colour\"");
+  refuse(R"({"type": "environment", "colors": 1})", "lights[1]: unknown key \"colors\"");
   refuse(R"({"type": "directional", "direction": [0, 0, 0], "irradiance": [1, 1, 1]})",
          "lights[1].direction: is the zero vector");
   const std::string area = R"("center": [0, 0, 0], "radiance": [1, 1, 1], )";

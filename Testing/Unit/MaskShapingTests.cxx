@@ -15,12 +15,12 @@ namespace {
 const Grid volume = makeCenteredGrid({61, 61, 41}, {1.0, 1.0, 1.5});
 
 /// Mask of a ball, cropped like the masks that readers return.
-Mask ball(double radius) {
+Mask makeBall(double radius) {
   return makeMask(makeCenteredGrid({33, 33, 25}, {1.0, 1.0, 1.5}),
                   [&](const Vec3& p) { return p.norm() <= radius; });
 }
 
-double volumeMm3(const Mask& mask) {
+double computeVolume(const Mask& mask) {
   return static_cast<double>(mask.count) * mask.grid.spacing().prod();
 }
 
@@ -30,23 +30,23 @@ double ballVolume(double radius) {
 
 TEST(MaskShaping, BallGrowsByItsMargin) {
   for (const double margin : {1.5, 4.0, 9.0}) {
-    const Mask grownBall = applyMargin(ball(10.0), margin, volume);
+    const Mask grownBall = applyMargin(makeBall(10.0), margin, volume);
     // Distances are between voxel centers, so the radius is uncertain by half a voxel.
-    EXPECT_GT(volumeMm3(grownBall), ballVolume(10.0 + margin - 0.7));
-    EXPECT_LT(volumeMm3(grownBall), ballVolume(10.0 + margin + 0.5));
+    EXPECT_GT(computeVolume(grownBall), ballVolume(10.0 + margin - 0.7));
+    EXPECT_LT(computeVolume(grownBall), ballVolume(10.0 + margin + 0.5));
     EXPECT_LT(grownBall.grid.worldCenter().norm(), 1e-9);
   }
 }
 
 TEST(MaskShaping, BallShrinksByItsMargin) {
-  const Mask shrunk = applyMargin(ball(10.0), -3.0, volume);
-  EXPECT_GT(volumeMm3(shrunk), ballVolume(10.0 - 3.0 - 1.0));
-  EXPECT_LT(volumeMm3(shrunk), ballVolume(10.0 - 3.0 + 0.7));
-  EXPECT_EQ(applyMargin(ball(10.0), -30.0, volume).count, 0);
+  const Mask shrunk = applyMargin(makeBall(10.0), -3.0, volume);
+  EXPECT_GT(computeVolume(shrunk), ballVolume(10.0 - 3.0 - 1.0));
+  EXPECT_LT(computeVolume(shrunk), ballVolume(10.0 - 3.0 + 0.7));
+  EXPECT_EQ(applyMargin(makeBall(10.0), -30.0, volume).count, 0);
 }
 
 TEST(MaskShaping, LargeMarginExtendsAtMostTwoVoxelsBeyondVolume) {
-  const Mask all = applyMargin(ball(10.0), 1000.0, volume);
+  const Mask all = applyMargin(makeBall(10.0), 1000.0, volume);
   EXPECT_TRUE((all.grid.size.array() <= volume.size.array() + 4).all());
   EXPECT_EQ(all.count, all.grid.voxelCount());
 }
@@ -91,13 +91,13 @@ double stepHeight(const Mask& mask, double radius) {
 
 TEST(MaskShaping, SmoothingRemovesStepsAndPreservesRadius) {
   const double radius = 12.0;
-  const Mask steps = ball(radius), smooth = smoothMask(steps, 1.2, volume);
+  const Mask steps = makeBall(radius), smooth = smoothMask(steps, 1.2, volume);
   EXPECT_EQ(smooth.maxValue, 255);
   EXPECT_GT(stepHeight(steps, radius), 0.5);
   EXPECT_LT(stepHeight(smooth, radius), 0.6 * stepHeight(steps, radius));
   // Smoothing shrinks a ball's radius by sigma^2 / radius.
-  EXPECT_NEAR(std::cbrt(volumeMm3(smooth) / ballVolume(1.0)),
-              std::cbrt(volumeMm3(steps) / ballVolume(1.0)) - 1.44 / radius, 0.12);
+  EXPECT_NEAR(std::cbrt(computeVolume(smooth) / ballVolume(1.0)),
+              std::cbrt(computeVolume(steps) / ballVolume(1.0)) - 1.44 / radius, 0.12);
 }
 
 TEST(MaskShaping, SmoothingPreservesFlatFaces) {
@@ -221,7 +221,7 @@ TEST(MaskShaping, InterpolationPreservesSlicesAndVolumeOfBall) {
     fineSize[axis] = 55;
     ASSERT_EQ(fine.grid.size, fineSize);
     EXPECT_LT(fine.grid.worldCenter().norm(), 1e-9);
-    EXPECT_NEAR(volumeMm3(fine) / ballVolume(radius), 1.0, 0.02);
+    EXPECT_NEAR(computeVolume(fine) / ballVolume(radius), 1.0, 0.02);
     std::int64_t differing = 0;
     for (std::int64_t i = 0; i < ball.grid.voxelCount(); ++i) {
       const Size3 at{i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y())};
@@ -236,7 +236,7 @@ TEST(MaskShaping, InterpolationPreservesSlicesAndVolumeOfBall) {
 }
 
 TEST(MaskShaping, NearlyCubicVoxelsAreNotInterpolated) {
-  const Mask mask = ball(10.0);
+  const Mask mask = makeBall(10.0);
   EXPECT_EQ(interpolateSlices(mask).voxels, mask.voxels);
 }
 

@@ -319,9 +319,9 @@ TEST(MrmlScene, AppliedTransformDoesNotMoveCameraAgain) {
   const CameraPose applied =
       readPose("transformNodeRef=\"t\" appliedTransform=\"" + rotation + "\"", transform);
   EXPECT_TRUE(isApprox(applied.position, Vec3(1, 2, 3)));
-  const CameraPose notYet = readPose("transformNodeRef=\"t\"", transform);
-  EXPECT_TRUE(isApprox(notYet.position, rotationMap * Vec3(1, 2, 3)));
-  EXPECT_TRUE(isApprox(notYet.up, Vec3(0, 0, 1)));
+  const CameraPose unapplied = readPose("transformNodeRef=\"t\"", transform);
+  EXPECT_TRUE(isApprox(unapplied.position, rotationMap * Vec3(1, 2, 3)));
+  EXPECT_TRUE(isApprox(unapplied.up, Vec3(0, 0, 1)));
 }
 
 TEST(MrmlScene, RefusesDegenerateCameras) {

@@ -103,7 +103,7 @@ struct NiftiFile {
 /// Volume along RAS axes whose voxels are stored in another order of axes; axes with a bit in
 /// `reversed` are flipped. `map` becomes index to RAS; the file has no qform or sform yet.
 template <typename Value>
-NiftiFile makeReordered(const Size3& size, const Vec3& spacing, const Vec3& origin, Value&& valueOf,
+NiftiFile makeReordered(const Size3& size, const Vec3& spacing, const Vec3& origin, Value&& value,
                         const std::array<int, 3>& order, int reversed, Affine& map) {
   NiftiFile file;
   map = Affine(Mat3::Zero(), origin);
@@ -122,7 +122,7 @@ NiftiFile makeReordered(const Size3& size, const Vec3& spacing, const Vec3& orig
       for (int x = 0; x < file.size[0]; ++x) {
         const Vec3 place = (map * Vec3(x, y, z) - origin).array() / spacing.array();
         const Vec3 voxel = place.array().round();
-        file.samples.push_back(valueOf(voxel.cast<std::int64_t>()));
+        file.samples.push_back(value(voxel.cast<std::int64_t>()));
       }
   return file;
 }

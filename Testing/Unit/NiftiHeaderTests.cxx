@@ -51,15 +51,15 @@ TEST(NiftiHeader, AxisOrderAndDirectionDoNotChangeVolume) {
       // Codes and maps of qform and sform; the map `elsewhere` must be ignored.
       struct {
         std::int16_t qform, sform;
-        const Affine &ofQform, &ofSform;
+        const Affine &qformMap, &sformMap;
       } const cases[] = {{0, 2, elsewhere, map}, {1, 0, map, elsewhere}, {1, 1, map, map},
                          {2, 2, map, map},       {1, 2, map, elsewhere}, {2, 1, elsewhere, map}};
       for (const auto& test : cases) {
         const std::array<float, 4> pixdim = file.pixdim;
-        file.setQform(test.ofQform);
-        if (&test.ofQform == &elsewhere)
+        file.setQform(test.qformMap);
+        if (&test.qformMap == &elsewhere)
           file.pixdim = pixdim;
-        file.setSform(test.ofSform);
+        file.setSform(test.sformMap);
         file.qformCode = test.qform;
         file.sformCode = test.sform;
         EXPECT_TRUE(isReference(readVolume(folder.write("v.nii", file.bytes()))))

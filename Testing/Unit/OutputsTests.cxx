@@ -368,7 +368,7 @@ TEST(Inputs, FilesOutsideArchiveFolderAreRefused) {
   const TemporaryFolder inside, outside;
   const fs::path member = inside.write("member", "1"), secret = outside.write("secret", "2");
   fs::create_symlink(secret, inside / "link");
-  const InputConfinement within(inside.path());
+  const InputConfinement confinement(inside.path());
   requireFile(member, "");
   for (const fs::path& path :
        {secret, inside / "link", inside / ".." / secret.parent_path().filename() / "secret"})

@@ -61,7 +61,7 @@ void expectJointlyUniform(Sample&& sample, std::size_t cells, const std::string&
 }
 
 TEST(StratifiedSampler, BlockHitsEachStratumOnce) {
-  const Sampler source(Sampling::stratified, 3);
+  const Sampler sampler(Sampling::stratified, 3);
   for (std::uint64_t pixel = 0; pixel < 200; ++pixel)
     for (std::uint64_t half = 0; half < 2; ++half)
       for (const std::uint64_t block : {0ULL, 1ULL, 5ULL, 1ULL << 40}) {
@@ -69,7 +69,7 @@ TEST(StratifiedSampler, BlockHitsEachStratumOnce) {
         std::array<std::set<std::size_t>, dimensionCount> boxes; // of pair i: [2 i] and [2 i + 1]
         for (std::uint64_t offset = 0; offset < size; ++offset) {
           const Dimensions values =
-              toDimensions(source.generate(pixel, sampleIndex(block, half, offset)));
+              toDimensions(sampler.generate(pixel, sampleIndex(block, half, offset)));
           for (std::size_t i = 0; i < dimensionCount; ++i)
             strata[i].insert(findCell(values[i], size));
           for (std::size_t i = 0; i < dimensionCount; i += 2) {
@@ -87,20 +87,20 @@ TEST(StratifiedSampler, BlockHitsEachStratumOnce) {
 /// A single sample, at any offset in a block, is distributed like an independent sample.
 TEST(StratifiedSampler, DimensionsOfASampleAreUniformAndIndependent) {
   for (const Sampling sampling : {Sampling::stratified, Sampling::independent}) {
-    const Sampler source(sampling, 11);
+    const Sampler sampler(sampling, 11);
     for (const std::uint64_t sample : {0ULL, 1ULL, 2ULL, 14ULL, 15ULL, 16ULL, 77ULL}) {
       for (std::size_t i = 0; i < dimensionCount; ++i)
         for (std::size_t j = i + 1; j < dimensionCount; ++j)
           expectJointlyUniform(
               [&](std::uint64_t pixel) {
-                const Dimensions values = toDimensions(source.generate(pixel, sample));
+                const Dimensions values = toDimensions(sampler.generate(pixel, sample));
                 return std::array{values[i], values[j]};
               },
               16, std::to_string(sample) + ": " + std::to_string(i) + ", " + std::to_string(j));
       std::vector<double> orthants(256, 0.0); // lower or upper half of each dimension
       for (std::uint64_t pixel = 0; pixel < 40000; ++pixel) {
         std::size_t half = 0;
-        for (const double number : toDimensions(source.generate(pixel, sample)))
+        for (const double number : toDimensions(sampler.generate(pixel, sample)))
           half = 2 * half + findCell(number, 2);
         orthants[half] += 1.0;
       }
@@ -109,16 +109,16 @@ TEST(StratifiedSampler, DimensionsOfASampleAreUniformAndIndependent) {
   }
 }
 
-/// For two samples of a block, a dimension of one predicts a dimension of another pair in the other
-/// only to the extent that both differ in their strata.
+/// Two samples of a block are in different strata of every dimension; apart from that, their strata
+/// in dimensions of different pairs are independent.
 TEST(StratifiedSampler, PairsOfDimensionsAreShuffledIndependently) {
-  const Sampler source(Sampling::stratified, 12);
+  const Sampler sampler(Sampling::stratified, 12);
   for (const std::uint64_t offset : {1ULL, 4ULL, 7ULL})
     for (const auto& [i, j] : {std::pair{0U, 4U}, {0U, 6U}, {2U, 6U}, {4U, 6U}}) {
       std::vector<double> counts((size - 1) * (size - 1), 0.0);
       for (std::uint64_t pixel = 0; pixel < 40000; ++pixel) {
-        const Dimensions a = toDimensions(source.generate(pixel, sampleIndex(0, 0, 0)));
-        const Dimensions b = toDimensions(source.generate(pixel, sampleIndex(0, 0, offset)));
+        const Dimensions a = toDimensions(sampler.generate(pixel, sampleIndex(0, 0, 0)));
+        const Dimensions b = toDimensions(sampler.generate(pixel, sampleIndex(0, 0, offset)));
         const std::size_t first = findCell(a[i], size) ^ findCell(b[i], size);
         const std::size_t second = findCell(a[j], size) ^ findCell(b[j], size);
         ASSERT_TRUE(first > 0 && second > 0);
@@ -131,7 +131,7 @@ TEST(StratifiedSampler, PairsOfDimensionsAreShuffledIndependently) {
 }
 
 TEST(StratifiedSampler, HalfBuffersAndBlocksAreIndependent) {
-  const Sampler source(Sampling::stratified, 13);
+  const Sampler sampler(Sampling::stratified, 13);
   const std::uint64_t reference = sampleIndex(0, 0, 3);
   for (std::uint64_t offset = 0; offset < size; ++offset)
     for (const std::uint64_t other :
@@ -139,8 +139,8 @@ TEST(StratifiedSampler, HalfBuffersAndBlocksAreIndependent) {
       for (std::size_t i = 0; i < dimensionCount; ++i)
         expectJointlyUniform(
             [&](std::uint64_t pixel) {
-              return std::array{toDimensions(source.generate(pixel, reference))[i],
-                                toDimensions(source.generate(pixel, other))[i]};
+              return std::array{toDimensions(sampler.generate(pixel, reference))[i],
+                                toDimensions(sampler.generate(pixel, other))[i]};
             },
             size,
             std::to_string(i) + ": samples " + std::to_string(reference) + ", " +
@@ -161,14 +161,14 @@ TEST(StratifiedSampler, NeighborsAndSeedsAreIndependent) {
 }
 
 TEST(IndependentSampler, SamplesAreIndependent) {
-  const Sampler source(Sampling::independent, 14);
-  EXPECT_EQ(source.samplesPerBlock(), 1U);
+  const Sampler sampler(Sampling::independent, 14);
+  EXPECT_EQ(sampler.samplesPerBlock(), 1U);
   for (const std::uint64_t other : {1ULL, 2ULL, 3ULL, 14ULL})
     for (std::size_t i = 0; i < dimensionCount; ++i)
       expectJointlyUniform(
           [&](std::uint64_t pixel) {
-            return std::array{toDimensions(source.generate(pixel, 0))[i],
-                              toDimensions(source.generate(pixel, other))[i]};
+            return std::array{toDimensions(sampler.generate(pixel, 0))[i],
+                              toDimensions(sampler.generate(pixel, other))[i]};
           },
           size, std::to_string(i) + ": " + std::to_string(other));
 }

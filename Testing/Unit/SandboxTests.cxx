@@ -133,7 +133,7 @@ const SandboxJob permissionsJob("test-allowed", listPermissions);
 
 TEST(Sandbox, ChildInheritsNothingAndWritesNothing) {
   const TemporaryFolder folder;
-  const std::string path = folder / "made";
+  const std::string path = folder / "new";
   const int file = ::open("/dev/null", O_RDONLY); // inherited unless the child closes it
   sigset_t blocked, before;
   ::sigemptyset(&blocked);
@@ -146,9 +146,9 @@ TEST(Sandbox, ChildInheritsNothingAndWritesNothing) {
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(file);
   // On kernels without Landlock the child can create a file, which stays empty.
-  if (const std::string made = "created a file; "; permissions.starts_with(made)) {
+  if (const std::string text = "created a file; "; permissions.starts_with(text)) {
     EXPECT_EQ(std::filesystem::file_size(path), 0u);
-    permissions = permissions.substr(made.size());
+    permissions = permissions.substr(text.size());
   }
   EXPECT_EQ(permissions, "end");
 }

@@ -172,7 +172,7 @@ TEST(SceneFiles, RefusesEntriesBeyondTheSizeLimit) {
     bytes.replace(entry + 24, 4, size, 4);
     folder.write("b.mrb", bytes);
     SceneFiles files(folder / "b.mrb");
-    expectRefused(folder / "b.mrb", "exceeds, with the files before it, the unpacked size",
+    expectRefused(folder / "b.mrb", "unpacks, together with the files before it, to more than",
                   [&] { files.locate("big"); });
   }
 }

@@ -57,9 +57,9 @@ struct Fog {
   static Volume makeVolume() {
     Affine toWorld = Affine::Identity();
     toWorld.translation() = Vec3::Constant(-3.5);
-    Volume made{Grid(Size3(8, 8, 8), toWorld), LargeArray<float>(512, 1.0F), 0.0, 0.0, "", {}};
-    computeRange(made);
-    return made;
+    Volume result{Grid(Size3(8, 8, 8), toWorld), LargeArray<float>(512, 1.0F), 0.0, 0.0, "", {}};
+    computeRange(result);
+    return result;
   }
 
   Volume volume = makeVolume();
@@ -186,7 +186,7 @@ class SimdLights : public InstructionSetTest {};
 /// Chi-squared test of two histograms with equal sample counts, as a z-score.
 double compareHistograms(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> mean(a.size()),
-      deviating(a.size()); // (apart - mean)^2 / mean = (a - b)^2 / (a + b)
+      deviating(a.size()); // (deviating - mean)^2 / mean = (a - b)^2 / (a + b)
   for (std::size_t i = 0; i < a.size(); ++i) {
     mean[i] = 0.5 * (a[i] + b[i]);
     deviating[i] = mean[i] + std::sqrt(0.5) * (a[i] - b[i]);

@@ -189,9 +189,9 @@ TEST(TintContrast, UnnecessaryAdjustmentsAreRelaxed) {
   }
 }
 
-/// Grays differ only in lightness, of which images show 43 %. A dark focus shades its surroundings,
-/// which costs 4; the surroundings of a light focus receive more light than it, which costs 3.
-TEST(TintContrast, ModelsEdgesInTheLightAndInAGroove) {
+/// Images show 43 % of a lightness difference. In a groove, surroundings lose 4, which reduces the
+/// contrast of a dark focus; in the light, they gain 3, which reduces that of a light focus.
+TEST(TintContrast, ModelsShadedAndLitEdges) {
   const Rgb dark = toLinear({40.0, 0.0, 0.0}), light = toLinear({80.0, 0.0, 0.0});
   for (const auto& [colors, loss] : {std::pair(InterfaceColors{dark, light, 1.0}, 4.0),
                                      std::pair(InterfaceColors{light, dark, 1.0}, 3.0)}) {

@@ -104,15 +104,15 @@ std::vector<ControlPoint> placeControlPoints(const FocusDepth& focus,
   const double spacing = total / count;
 
   Contour chosen;
-  double reached = 0.0;
+  double arcLength = 0.0;
   visitSegments(focus.depth, contours,
                 [&](const Crossing& from, const Crossing& to, double length) {
                   const auto next = [&] {
-                    return (static_cast<double>(chosen.size()) + 0.5) * spacing - reached;
+                    return (static_cast<double>(chosen.size()) + 0.5) * spacing - arcLength;
                   };
                   while (static_cast<int>(chosen.size()) < count && next() < length)
                     chosen.push_back(next() < 0.5 * length ? from : to);
-                  reached += length;
+                  arcLength += length;
                 });
   return collectDistinctSamples(focus.depth, std::move(chosen));
 }

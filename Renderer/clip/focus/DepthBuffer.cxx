@@ -48,7 +48,7 @@ void extendAxis(DepthAxis& axis, double factor, double a, double b) {
 }
 
 /// Axis on which the center of pixel i is at (i + 1/2 - pixels / 2) pitch, as in Camera::toPlane.
-DepthAxis viewportAxis(double pitch, int pixels) {
+DepthAxis makeViewportAxis(double pitch, int pixels) {
   DepthAxis axis;
   axis.pitch = pitch;
   axis.start = 0.5 - 0.5 * pixels;
@@ -59,8 +59,8 @@ DepthAxis viewportAxis(double pitch, int pixels) {
 } // namespace
 
 DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
-    : m_x(viewportAxis(camera.pixelPitch(), camera.width())),
-      m_y(viewportAxis(-camera.pixelPitch(), camera.height())),
+    : m_x(makeViewportAxis(camera.pixelPitch(), camera.width())),
+      m_y(makeViewportAxis(-camera.pixelPitch(), camera.height())),
       m_reference(camera.targetDepth()) {
   const double pitch = camera.pixelPitch();
   const Rectangle span = projectVolume(camera, volume);

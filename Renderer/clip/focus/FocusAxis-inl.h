@@ -26,10 +26,10 @@ using M = hn::Mask<Doubles>;
 constexpr Doubles doubles{};
 constexpr Ints ints{};
 
-HWY_INLINE D all(double x) {
+HWY_INLINE D set(double x) {
   return hn::Set(doubles, x);
 }
-HWY_INLINE I allInts(std::int64_t x) {
+HWY_INLINE I setInts(std::int64_t x) {
   return hn::Set(ints, static_cast<std::int32_t>(x));
 }
 HWY_INLINE M isNonZero(I x) {
@@ -48,39 +48,39 @@ struct FocusAxis {
 
   FocusAxis(D o, D d, D t, std::int64_t blocks)
       : direction(hn::Abs(d)),
-        inverseDirection(hn::Div(all(1.0), direction)),
+        inverseDirection(hn::Div(set(1.0), direction)),
         face(hn::Zero(doubles)),
         isMirrored(hn::Lt(d, hn::Zero(doubles))),
         cellCount(static_cast<double>(blocks * FocusCells::blockSize)) {
-    origin = hn::IfThenElse(isMirrored, hn::Sub(all(cellCount), o), o);
-    cell = hn::Max(hn::Min(findCell(t), all(cellCount - 1.0)), hn::Zero(doubles));
+    origin = hn::IfThenElse(isMirrored, hn::Sub(set(cellCount), o), o);
+    cell = hn::Max(hn::Min(findCell(t), set(cellCount - 1.0)), hn::Zero(doubles));
   }
 
   /// Sets `face` and returns its t; infinity for the last face, since the ray's range ends there.
   HWY_INLINE D findFace(M emptyBlock) {
     constexpr double edge = FocusCells::blockSize;
-    const D block = hn::Floor(hn::Mul(cell, all(1.0 / edge)));
-    face = hn::IfThenElse(emptyBlock, hn::MulAdd(block, all(edge), all(edge)),
-                          hn::Add(cell, all(1.0)));
-    const M inner = hn::And(hn::Lt(face, all(cellCount)), hn::Lt(inverseDirection, all(infinity)));
-    return hn::IfThenElse(inner, hn::Mul(hn::Sub(face, origin), inverseDirection), all(infinity));
+    const D block = hn::Floor(hn::Mul(cell, set(1.0 / edge)));
+    face = hn::IfThenElse(emptyBlock, hn::MulAdd(block, set(edge), set(edge)),
+                          hn::Add(cell, set(1.0)));
+    const M inner = hn::And(hn::Lt(face, set(cellCount)), hn::Lt(inverseDirection, set(infinity)));
+    return hn::IfThenElse(inner, hn::Mul(hn::Sub(face, origin), inverseDirection), set(infinity));
   }
 
   /// Advances the rays of `which` to t: into the cell beyond the face where `crosses`, otherwise at
   /// most up to the face. Never moves back.
   HWY_INLINE void advance(M which, M crosses, D t) {
-    const D before = hn::Min(hn::Max(findCell(t), cell), hn::Sub(face, all(1.0)));
+    const D before = hn::Min(hn::Max(findCell(t), cell), hn::Sub(face, set(1.0)));
     cell = hn::IfThenElse(which, hn::IfThenElse(crosses, face, before), cell);
   }
 
   /// Cell index, not mirrored.
   HWY_INLINE D cellIndex() const {
-    return hn::IfThenElse(isMirrored, hn::Sub(all(cellCount - 1.0), cell), cell);
+    return hn::IfThenElse(isMirrored, hn::Sub(set(cellCount - 1.0), cell), cell);
   }
   /// Position in the cell at t, 0 to 1, and displacement over `length`; both not mirrored.
   HWY_INLINE D fraction(D t) const {
     const D f = hn::Sub(position(t), cell);
-    return hn::IfThenElse(isMirrored, hn::Sub(all(1.0), f), f);
+    return hn::IfThenElse(isMirrored, hn::Sub(set(1.0), f), f);
   }
   HWY_INLINE D displacement(D length) const {
     const D d = hn::Mul(direction, length);

@@ -78,8 +78,8 @@ public:
     double valueScale;          ///< indicator per unit of a value
   };
 
-  /// Calls visit(block) for each non-empty block (i, j, k), [i, i + 1]... of cell space /
-  /// blockSize.
+  /// Calls visit(block) for each non-empty block. Block i fills [i, i + 1] * blockSize of cell
+  /// space in each axis.
   template <typename Visitor>
   void visitOccupied(const Visitor& visit) const {
     std::size_t block = 0;

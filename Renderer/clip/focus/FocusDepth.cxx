@@ -81,15 +81,15 @@ FocusDepth FocusTracer::traceDepths() const {
   const FocusFootprint focusFootprint(m_camera, depth, *m_cells);
   const DomainFootprint domainFootprint(m_camera, m_volume);
 
-  const auto meetsVolume = [&](std::int64_t column, std::int64_t row) {
+  const auto intersectsVolume = [&](std::int64_t column, std::int64_t row) {
     return !clipToVolume(m_volume, m_camera.makePlaneRay(depth.position(column, row))).isEmpty();
   };
   tbb::parallel_for(std::int64_t{0}, depth.rows(), [&](std::int64_t row) {
     // The domain is convex, so the samples whose rays meet it are contiguous.
     auto [first, end] = domainFootprint.columns(depth, row);
-    while (first < end && !meetsVolume(first, row))
+    while (first < end && !intersectsVolume(first, row))
       ++first;
-    while (first < end && !meetsVolume(end - 1, row))
+    while (first < end && !intersectsVolume(end - 1, row))
       --end;
     std::vector<std::int64_t> samples;
     std::vector<DepthQuery> queries;

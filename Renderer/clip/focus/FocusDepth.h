@@ -12,7 +12,7 @@
 
 namespace fenestra {
 
-/// What a camera ray meets: nothing (outside), the volume's domain only (context), or the focus.
+/// What a camera ray hits: nothing (outside), only the volume's domain (context), or the focus.
 enum class Region : std::uint8_t { outside, context, focus };
 
 struct FocusDepth {

@@ -61,10 +61,10 @@ private:
       return hn::MulAdd(hn::MulAdd(hn::MulAdd(c3, s, c2), s, c1), s, c0);
     };
     const auto slope = [&](D s) {
-      return hn::MulAdd(hn::MulAdd(hn::Mul(all(3.0), c3), s, hn::Mul(all(2.0), c2)), s, c1);
+      return hn::MulAdd(hn::MulAdd(hn::Mul(set(3.0), c3), s, hn::Mul(set(2.0), c2)), s, c1);
     };
-    const D rounding = all(1e-15);
-    D low = hn::Zero(doubles), high = all(1.0);
+    const D rounding = set(1e-15);
+    D low = hn::Zero(doubles), high = set(1.0);
     D s = hn::Div(c0, hn::Sub(c0, at(high)));
     M open = hn::FirstN(doubles, m_size - i);
     for (int step = 0; step < 100; ++step) {
@@ -79,7 +79,7 @@ private:
       if (hn::AllFalse(doubles, open))
         break;
       const M inside = hn::And(hn::Gt(newton, low), hn::Lt(newton, high));
-      const D next = hn::IfThenElse(inside, newton, hn::Mul(all(0.5), hn::Add(low, high)));
+      const D next = hn::IfThenElse(inside, newton, hn::Mul(set(0.5), hn::Add(low, high)));
       s = hn::IfThenElse(open, next, s);
     }
     return s;
@@ -143,7 +143,7 @@ public:
     const I y = hn::DemoteTo(ints, m_axes[1].cellIndex());
     const I z = hn::DemoteTo(ints, m_axes[2].cellIndex());
     const auto linear = [](I a, I b, I c, std::int64_t countA, std::int64_t countB) {
-      return hn::Add(a, hn::Mul(allInts(countA), hn::Add(b, hn::Mul(allInts(countB), c))));
+      return hn::Add(a, hn::Mul(setInts(countA), hn::Add(b, hn::Mul(setInts(countB), c))));
     };
     const I block =
         hn::GatherIndex(ints, m_cells.blocks,
@@ -158,12 +158,12 @@ public:
     const D exit = hn::Min(m_end, hn::Max(m_t, out));
 
     if (const M candidates = hn::And(isOccupied, m_busy); !hn::AllFalse(doubles, candidates)) {
-      const I three = allInts(3);
+      const I three = setInts(3);
       const I cell = linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 4, 4);
       const I at = hn::Add(hn::ShiftLeft<6>(block), cell);
       const I corners = hn::And(
           hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.corners), at),
-          allInts(0xff));
+          setInts(0xff));
       if (const M occupied = hn::And(candidates, isNonZero(corners));
           !hn::AllFalse(doubles, occupied))
         intersect(occupied, corners,
@@ -219,14 +219,14 @@ private:
                      times(d, sum(times(x, w, q), times(u, y, q), times(u, w, z))));
     const D c3 = times(d, u, w, q);
 
-    const D third = all(1.0 / 3.0);
+    const D third = set(1.0 / 3.0);
     const D b1 = hn::Add(c0, hn::Mul(c1, third));
     const D b2 = hn::Add(b1, hn::Mul(hn::Add(c1, c2), third));
     const D b3 = sum(c0, c1, c2, c3);
     const D greatest = hn::Max(hn::Max(c0, b1), hn::Max(b2, b3));
-    D least = all(-1e-12); // tolerance for rounding
+    D least = set(-1e-12); // tolerance for rounding
     if constexpr (withMaxima)
-      least = hn::Min(least, hn::Sub(hn::Load(doubles, m_maxima.data()), all(ridgeTolerance)));
+      least = hn::Min(least, hn::Sub(hn::Load(doubles, m_maxima.data()), set(ridgeTolerance)));
     const M possible = hn::And(which, hn::Ge(greatest, least));
     if (hn::AllFalse(doubles, possible))
       return;
@@ -238,21 +238,21 @@ private:
   /// Indicator - 1/2 at the corners of cells, x fastest.
   HWY_INLINE static std::array<D, 8> binaryCorners(I corners) {
     const auto value = [&](std::int32_t i) {
-      const I bit = hn::And(corners, allInts(1 << i));
-      return hn::IfThenElse(isNonZero(bit), all(0.5), all(-0.5));
+      const I bit = hn::And(corners, setInts(1 << i));
+      return hn::IfThenElse(isNonZero(bit), set(0.5), set(-0.5));
     };
     return {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
   }
   HWY_INLINE std::array<D, 8> smoothCorners(I first) const {
     const auto value = [&](I byte) {
-      const D whole = hn::PromoteTo(doubles, hn::And(byte, allInts(0xff)));
-      return hn::MulSub(whole, all(m_cells.valueScale), all(0.5));
+      const D number = hn::PromoteTo(doubles, hn::And(byte, setInts(0xff)));
+      return hn::MulSub(number, set(m_cells.valueScale), set(0.5));
     };
     std::array<D, 8> v;
     std::size_t i = 0;
     for (const std::int32_t row : {0, 5, 25, 30}) { // two neighbors along x per gather
       const I both = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.values),
-                                      hn::Add(first, allInts(row)));
+                                      hn::Add(first, setInts(row)));
       v[i++] = value(both);
       v[i++] = value(hn::ShiftRight<8>(both));
     }
@@ -267,10 +267,10 @@ private:
       hn::Store(c[i], doubles, lanes[i].data());
     hn::Store(m_t, doubles, lanes[4].data());
     hn::Store(length, doubles, lanes[5].data());
-    hn::Store(hn::IfThenElseZero(m_busy, all(1.0)), doubles, lanes[6].data());
-    const unsigned toLook = maskBits(which);
+    hn::Store(hn::IfThenElseZero(m_busy, set(1.0)), doubles, lanes[6].data());
+    const unsigned pending = maskBits(which);
     const unsigned rising = maskBits(rises);
-    for (unsigned left = toLook; left != 0; left &= left - 1) {
+    for (unsigned left = pending; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(left));
       const Cubic cubic{{lanes[0][lane], lanes[1][lane], lanes[2][lane], lanes[3][lane]}};
       const bool isRising = rising >> lane & 1;

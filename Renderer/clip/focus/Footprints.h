@@ -38,7 +38,7 @@ public:
 private:
   static constexpr std::int64_t tileSize = 4; ///< samples
 
-  std::int64_t m_tilesPerRow; ///< tiles per row
+  std::int64_t m_tilesPerRow;
   std::vector<Interval> m_tiles;
 };
 

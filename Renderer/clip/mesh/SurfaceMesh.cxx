@@ -71,8 +71,8 @@ private:
     m_firstColumn = m_buffer.columns();
     m_firstRow = m_buffer.rows();
     for (std::int64_t row = 0; row < m_buffer.rows(); ++row) {
-      const DomainFootprint::Columns seen = m_footprint[static_cast<std::size_t>(row)];
-      for (std::int64_t column = seen.first; column < seen.end; ++column)
+      const DomainFootprint::Columns covered = m_footprint[static_cast<std::size_t>(row)];
+      for (std::int64_t column = covered.first; column < covered.end; ++column)
         if (hasDepth(column, row)) {
           m_firstColumn = std::min(m_firstColumn, column);
           endColumn = std::max(endColumn, column + 1);
@@ -94,9 +94,9 @@ private:
     DomainFootprint::Columns nearby{m_buffer.columns(), 0};
     for (std::int64_t near = std::max(std::int64_t{0}, row - 1);
          near < std::min(m_buffer.rows(), row + 2); ++near) {
-      const DomainFootprint::Columns seen = m_footprint[static_cast<std::size_t>(near)];
-      if (seen.first < seen.end)
-        nearby = {std::min(nearby.first, seen.first), std::max(nearby.end, seen.end)};
+      const DomainFootprint::Columns covered = m_footprint[static_cast<std::size_t>(near)];
+      if (covered.first < covered.end)
+        nearby = {std::min(nearby.first, covered.first), std::max(nearby.end, covered.end)};
     }
     const bool isCorner = column + 1 >= nearby.first && column <= nearby.end;
     return isCorner && hasDepth(column, row) ? m_buffer.at(m_buffer.sample(column, row)) : noDepth;

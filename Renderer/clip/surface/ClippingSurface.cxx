@@ -144,7 +144,7 @@ private:
 
 /// Length, mm, over which the exact surface levels off from the slope of the focus. A fraction of
 /// the volume's diagonal that keeps the surface inside the volume's depth range.
-double levelingLength(const Domain& volume) {
+double computeLevelingLength(const Domain& volume) {
   return 0.05 * (volume.grid().worldCorner(7) - volume.grid().worldCorner(0)).norm();
 }
 
@@ -209,7 +209,7 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
     fillHole(*buffer, surface.focus, camera, options.hole);
   } else if (options.boundary == Boundary::exact) {
     silhouette = std::make_shared<SilhouetteCells>(tracer, surface.focus);
-    fillFromHalo(*buffer, surface.focus, *silhouette, levelingLength(volume));
+    fillFromHalo(*buffer, surface.focus, *silhouette, computeLevelingLength(volume));
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
     surface.splineSeconds = stopwatch.lap();

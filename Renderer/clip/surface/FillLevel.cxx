@@ -61,7 +61,7 @@ void FillLevel::extendBoundary(double length) {
       known[sample.at] = 1;
       front.push_back(sample.at);
     }
-    for (double reached = 0.0; reached < length && !front.empty(); reached += pitch()) {
+    for (double extended = 0.0; extended < length && !front.empty(); extended += pitch()) {
       next.clear();
       for (const std::size_t from : front)
         forEachNeighbor(from, [&](const Neighbor& neighbor) {

@@ -1,6 +1,6 @@
 #pragma once
 // Virtual holes: channels of simple shape from the camera to the focus, like the boxes and spheres
-// of Wimmer et al., reference [6] of the paper.
+// of Wimmer et al. (reference [6] of the paper in CITATION.cff).
 
 #include "clip/focus/FocusDepth.h"
 

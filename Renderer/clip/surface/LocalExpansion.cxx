@@ -76,7 +76,7 @@ std::optional<Polynomials> expand(const Terms& terms, double radius, double tole
 }
 
 /// Re(i^power z).
-double rotatedReal(const Complex& z, Eigen::Index power) {
+double rotateReal(const Complex& z, Eigen::Index power) {
   const double value = power & 1 ? -z.imag() : z.real();
   return power & 2 ? -value : value;
 }
@@ -97,9 +97,9 @@ std::optional<LocalExpansion> LocalExpansion::make(std::span<const KernelTerm> t
     const Complex& q = polynomials->q[static_cast<std::size_t>(k)];
     for (Eigen::Index b = 0; b <= k; ++b) {
       const double binomial = binomials[static_cast<std::size_t>(k)][static_cast<std::size_t>(b)];
-      coefficients(k - b, b) += binomial * rotatedReal(p, b);
-      coefficients(k - b + 1, b) += binomial * rotatedReal(q, b);
-      coefficients(k - b, b + 1) -= binomial * rotatedReal(q, b + 1); // -i y of conj(tau)
+      coefficients(k - b, b) += binomial * rotateReal(p, b);
+      coefficients(k - b + 1, b) += binomial * rotateReal(q, b);
+      coefficients(k - b, b + 1) -= binomial * rotateReal(q, b + 1); // -i y of conj(tau)
     }
   }
   return LocalExpansion(std::move(coefficients), radius);

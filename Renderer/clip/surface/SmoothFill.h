@@ -18,8 +18,8 @@
 // coarser levels. If a coarse sample lies across the boundary, its depth is the boundary
 // extrapolated to its center, and only its part outside the focus bends. The method is linear in
 // the samples. Compared with the closed-form solution along a straight edge, its error is at most 8
-// % of slope * length at any resolution (Testing/Unit). That is an error in where the surface
-// levels off: depth and slope at the boundary come from the finest level.
+// % of slope * length at any resolution (Testing/Unit). The error affects only where the surface
+// levels off; depth and slope at the boundary come from the finest level.
 
 #include "clip/focus/FocusDepth.h"
 

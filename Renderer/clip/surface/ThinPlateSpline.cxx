@@ -26,7 +26,7 @@ double coordinateRounding(const Vec2& site) {
 
 /// phi of squared distances.
 template <typename Derived>
-auto kernel(const Eigen::ArrayBase<Derived>& squared) {
+auto phi(const Eigen::ArrayBase<Derived>& squared) {
   return squared * (squared + tiny).log();
 }
 
@@ -36,10 +36,10 @@ auto toSpan(Array& array) {
 }
 
 /// K + lambda I.
-Eigen::MatrixXd kernelMatrix(const Eigen::MatrixX2d& sites, double lambda) {
+Eigen::MatrixXd makeKernelMatrix(const Eigen::MatrixX2d& sites, double lambda) {
   Eigen::MatrixXd k(sites.rows(), sites.rows());
   for (Eigen::Index i = 0; i < sites.rows(); ++i)
-    k.col(i) = kernel((sites.rowwise() - sites.row(i)).rowwise().squaredNorm().array());
+    k.col(i) = phi((sites.rowwise() - sites.row(i)).rowwise().squaredNorm().array());
   k.diagonal().array() += lambda;
   return k;
 }
@@ -156,7 +156,7 @@ Samples mergeSites(const Samples& samples, double lambda) {
   for (std::size_t i = 0; i < samples.sites.size(); ++i) {
     const auto isNear = [&, site = samples.sites[i]](const Vec2& other) {
       const Eigen::Array<double, 1, 1> squared((site - other).squaredNorm());
-      return squared[0] < 1e-6 && lambda - kernel(squared)[0] < minEigenvalue; // phi < 0 if close
+      return squared[0] < 1e-6 && lambda - phi(squared)[0] < minEigenvalue; // phi < 0 if close
     };
     const auto found = std::ranges::find_if(distinct.sites, isNear);
     const auto at = static_cast<std::size_t>(found - distinct.sites.begin());
@@ -212,7 +212,7 @@ void ThinPlateSpline::fit(const std::vector<Vec2>& sites, const Eigen::VectorXd&
   if (!std::isfinite(m_lambda) || p.rank() < 3 || n == 3)
     return;
 
-  const Eigen::MatrixXd k = kernelMatrix(u, m_lambda);
+  const Eigen::MatrixXd k = makeKernelMatrix(u, m_lambda);
   Eigen::VectorXd w = p.applyQTransposed(values);
   w.head<3>().setZero();
   w.tail(n - 3) = p.projectToNullSpace(k).ldlt().solve(w.tail(n - 3)).eval();

@@ -24,8 +24,8 @@ namespace fenestra {
 /// Accuracy: the error of f is 1e-14 times the condition number, relative to |f| and to the range
 /// of the values, at any distance from the sites. The tilt across nearly collinear sites is
 /// ill-conditioned. With almost no smoothing, f overshoots between sites that are very close
-/// together, and finally loses all digits. Sites closer than r with lambda / s^2 - phi(r / s) <
-/// 1e-12 (r = 1.9e-7 s at p = 1) are therefore merged into the first of them, with their mean
+/// together, and in the limit loses all digits. Sites closer than r with lambda / s^2 - phi(r / s)
+/// < 1e-12 (r = 1.9e-7 s at p = 1) are therefore merged into the first of them, with their mean
 /// value.
 class ThinPlateSpline {
 public:

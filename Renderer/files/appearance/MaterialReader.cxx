@@ -101,14 +101,14 @@ std::string readMaterialName(const JsonNode& node, const std::map<std::string, M
   return name;
 }
 
-/// Sets the members that the object gives for a segment's use of its material.
-template <typename Use>
-void readUse(const JsonNode& object, Use& use) {
+/// Sets priority, clipping and density of a segment or rule, if the object gives them.
+template <typename Assignment>
+void readAssignment(const JsonNode& object, Assignment& assignment) {
   if (const auto priority = object.find("priority"))
-    use.priority = readInteger(*priority, 0.0, maxPriority);
+    assignment.priority = readInteger(*priority, 0.0, maxPriority);
   if (const auto clip = object.find("clip"))
-    use.isClipped = clip->boolean();
-  readOptional(object, "density", 0.0, maxDensity, use.density);
+    assignment.isClipped = clip->boolean();
+  readOptional(object, "density", 0.0, maxDensity, assignment.density);
 }
 
 MaterialRule readRule(const JsonNode& node, const std::map<std::string, Material>& known) {
@@ -132,7 +132,7 @@ MaterialRule readRule(const JsonNode& node, const std::map<std::string, Material
                       "segments");
   rule.material = readMaterialName(node.at("material"), known);
   rule.isFromFile = true;
-  readUse(node, rule);
+  readAssignment(node, rule);
   return rule;
 }
 
@@ -161,7 +161,7 @@ void applyFields(const JsonNode& fields, const MaterialTable& table, SegmentMedi
   if (const auto name = fields.find("material"))
     medium.material = table.materials.at(readMaterialName(*name, table.materials));
   readMaterial(fields, medium.material);
-  readUse(fields, medium);
+  readAssignment(fields, medium);
 }
 
 std::string describeSource(const MaterialChange& change) {

@@ -2,8 +2,8 @@
 // Reads tables of materials with the rules that assign them to segments, and the changes to single
 // segments that --material gives. Resources/materials/README.md describes the file.
 //
-// Rules choose by terminology code, label value or name. Code below the scene layer sees none of
-// these, only one SegmentMedium per segment. The built-in library uses the user's file format.
+// Rules choose by terminology code, label value or name. Layers below the scene layer receive none
+// of these, only one SegmentMedium per segment. The built-in library uses the user's file format.
 
 #include "files/appearance/SegmentPatterns.h"
 #include "model/medium/Material.h"

@@ -43,8 +43,8 @@ OrganPreset parsePreset(std::string_view json, const std::string& source) {
                      .modality = modalities[root.at("modality").choice({"CT", "MR", "US"})],
                      .focus = readFocus(root.at("focus")),
                      .before = readPatternStrings(root, "before")};
-  for (const auto& [flag, value] : root.at("flags").members())
-    preset.options.emplace_back(flag, readValue(value));
+  for (const auto& [option, value] : root.at("flags").members())
+    preset.options.emplace_back(option, readValue(value));
   if (const auto tested = root.find("tested"))
     preset.tested = tested->text();
   return preset;

@@ -24,17 +24,17 @@ std::string toKey(std::string_view name) {
   return key;
 }
 
-/// Checks dimension and sizes. ITK keeps sizes in 32 bits and passes teem a buffer of those; teem
-/// has room for 16 axes, and writes one more if there are too many sizes.
+/// Checks dimension and sizes. ITK stores sizes in 32 bits. Teem has room for 16 axes, and writes
+/// beyond it if there are more sizes.
 void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
   const auto axes = parseInteger(findValue(fields, "dimension"));
   if (!axes || *axes < 1 || *axes > 10)
-    throw inputError(path, "dimension: must be a whole number from 1 to 10");
+    throw inputError(path, "dimension: must be an integer from 1 to 10");
   if (!fields.contains("sizes"))
     throw damagedError(path, "NRRD");
   for (const std::string& word : splitWords(fields.at("sizes")))
     if (const auto size = parseInteger(word); !size || *size < 1 || *size > INT32_MAX)
-      throw inputError(path, "sizes: each must be a whole number from 1 to 2147483647");
+      throw inputError(path, "sizes: each must be an integer from 1 to 2147483647");
 }
 
 /// Lengths of the vectors in parentheses; nullopt: malformed vector.
@@ -90,8 +90,8 @@ void checkNrrdUnits(const std::filesystem::path& path, const Fields& fields, con
     checkMillimeters(path, name, parts[i]);
 }
 
-/// Checks spacings, axis mins and axis maxs. Beside a space, teem expects space directions instead;
-/// without spacings, ITK uses the mins, and 1 mm.
+/// Checks spacings, axis mins and axis maxs. With a space, teem expects space directions instead.
+/// Without spacings, ITK uses the axis mins and a spacing of 1 mm.
 void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
   const bool hasSpace = fields.contains("space") || fields.contains("spacedimension");
   for (const auto& [name, hint] : {std::pair("spacings", "write space directions"),
@@ -128,7 +128,7 @@ void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) 
   checkNrrdUnits(path, fields, "units");
 }
 
-/// Lines of an NRRD header, short enough for teem's messages.
+/// Lines of a NRRD header, short enough for teem's messages.
 class NrrdLines {
 public:
   explicit NrrdLines(const std::filesystem::path& path) : m_path(path), m_lines(path) {}

@@ -1,5 +1,5 @@
 #pragma once
-// NRRD header, validated before ITK's reader sees the file.
+// NRRD header, validated before ITK's reader opens the file.
 
 #include <cstdint>
 #include <filesystem>

@@ -106,10 +106,10 @@ DotMatrix scale2x(const DotMatrix& dots) {
       const int i = x / 2, j = y / 2;
       const bool here = dots.at(i, j);
       const bool beside = dots.at(i + (x % 2 == 0 ? -1 : 1), j);
-      const bool across = dots.at(i + (x % 2 == 0 ? 1 : -1), j);
+      const bool opposite = dots.at(i + (x % 2 == 0 ? 1 : -1), j);
       const bool above = dots.at(i, j + (y % 2 == 0 ? -1 : 1));
       const bool below = dots.at(i, j + (y % 2 == 0 ? 1 : -1));
-      const bool isCorner = beside == above && beside != below && above != across;
+      const bool isCorner = beside == above && beside != below && above != opposite;
       twice.isSet.push_back(isCorner ? beside : here);
     }
   return twice;
@@ -135,22 +135,22 @@ std::string toAscii(std::string_view text) {
 }
 
 TextBitmap rasterizeText(std::string_view text, double dotSize) {
-  constexpr int fine = 8; // subdots per dot: scale2x three times
+  constexpr int subdotsPerDot = 8; // scale2x three times
   const DotMatrix dots = scale2x(scale2x(scale2x(rasterizeDots(toAscii(text)))));
-  const auto pixels = [dotSize](int parts) {
-    return static_cast<int>(std::ceil(parts * dotSize / fine));
+  const auto pixels = [dotSize](int subdots) {
+    return static_cast<int>(std::ceil(subdots * dotSize / subdotsPerDot));
   };
   TextBitmap result{pixels(dots.width), pixels(dots.height), {}};
-  const auto part = [dotSize](int pixel) {
-    return static_cast<int>(std::lround(pixel * fine / dotSize));
+  const auto toSubdot = [dotSize](int pixel) {
+    return static_cast<int>(std::lround(pixel * subdotsPerDot / dotSize));
   };
   for (int y = 0; y < result.height; ++y)
     for (int x = 0; x < result.width; ++x) {
-      int inked = 0, all = 0;
-      for (int v = part(y); v < part(y + 1); ++v)
-        for (int u = part(x); u < part(x + 1); ++u, ++all)
-          inked += dots.at(u, v) ? 1 : 0;
-      result.coverage.push_back(static_cast<float>(inked) / static_cast<float>(std::max(all, 1)));
+      int covered = 0, all = 0;
+      for (int v = toSubdot(y); v < toSubdot(y + 1); ++v)
+        for (int u = toSubdot(x); u < toSubdot(x + 1); ++u, ++all)
+          covered += dots.at(u, v) ? 1 : 0;
+      result.coverage.push_back(static_cast<float>(covered) / static_cast<float>(std::max(all, 1)));
     }
   return result;
 }

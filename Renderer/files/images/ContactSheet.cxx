@@ -96,17 +96,17 @@ Canvas scaleToBox(const Image& image) {
   Canvas canvas(scaled(image.width), scaled(image.height), panelColor);
   const Plane* const alpha = image.find("A");
   const std::array<const Plane*, 3> planes = {image.find("R"), image.find("G"), image.find("B")};
-  const auto from = [](int at, int size, int all) {
+  const auto toSource = [](int at, int size, int all) {
     return static_cast<int>(std::int64_t{at} * all / size);
   };
   for (int y = 0; y < canvas.height(); ++y)
     for (int x = 0; x < canvas.width(); ++x) {
-      const int top = from(y, canvas.height(), image.height);
-      const int left = from(x, canvas.width(), image.width);
-      const int bottom = std::max(top + 1, from(y + 1, canvas.height(), image.height));
-      const int right = std::max(left + 1, from(x + 1, canvas.width(), image.width));
+      const int top = toSource(y, canvas.height(), image.height);
+      const int left = toSource(x, canvas.width(), image.width);
+      const int bottom = std::max(top + 1, toSource(y + 1, canvas.height(), image.height));
+      const int right = std::max(left + 1, toSource(x + 1, canvas.width(), image.width));
       Rgb sum = Rgb::Zero();
-      double covered = 0.0;
+      double alphaSum = 0.0;
       for (int v = top; v < bottom; ++v)
         for (int u = left; u < right; ++u) {
           const std::size_t i =
@@ -114,11 +114,11 @@ Canvas scaleToBox(const Image& image) {
               static_cast<std::size_t>(u);
           const double weight = alpha ? static_cast<double>((*alpha)[i]) : 1.0;
           sum += weight * decodeSrgb(Rgb((*planes[0])[i], (*planes[1])[i], (*planes[2])[i]));
-          covered += weight;
+          alphaSum += weight;
         }
       const double all = 1.0 * (bottom - top) * (right - left);
-      if (covered > 0.0)
-        canvas.blend(x, y, sum / covered, static_cast<float>(covered / all));
+      if (alphaSum > 0.0)
+        canvas.blend(x, y, sum / alphaSum, static_cast<float>(alphaSum / all));
     }
   return canvas;
 }
@@ -155,9 +155,9 @@ void drawEntry(Canvas& sheet, int left, int top, int boxHeight, const Thumbnail&
   constexpr int margin = 14, nameLine = static_cast<int>(lineHeight * nameDotSize),
                 textLine = static_cast<int>(lineHeight * textDotSize) + 2;
   sheet.fill(left, top, boxWidth, boxHeight, panelColor);
-  if (const auto& picture = thumbnail.image)
-    sheet.drawImage(left + (boxWidth - picture->width()) / 2,
-                    top + (boxHeight - picture->height()) / 2, *picture);
+  if (const auto& image = thumbnail.image)
+    sheet.drawImage(left + (boxWidth - image->width()) / 2, top + (boxHeight - image->height()) / 2,
+                    *image);
   int line = top + margin;
   const auto fits = static_cast<std::size_t>((boxWidth - 2 * margin) / (glyphWidth * textDotSize));
   if (!thumbnail.problem.empty())
@@ -187,8 +187,8 @@ Image makeContactSheet(const std::string& title, const std::string& subtitle,
   for (const SheetEntry& entry : entries) {
     thumbnails.push_back(makeThumbnail(entry));
     lines = std::max(lines, entry.lines.size());
-    if (const auto& picture = thumbnails.back().image)
-      boxHeight = std::max(boxHeight, picture->height());
+    if (const auto& image = thumbnails.back().image)
+      boxHeight = std::max(boxHeight, image->height());
   }
   const int count = static_cast<int>(entries.size());
   const int columns = std::min(maxColumns, chooseColumns(count));

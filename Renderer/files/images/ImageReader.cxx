@@ -313,7 +313,7 @@ Image readNrrd(const std::filesystem::path& path) {
 } // namespace
 
 Image readImage(const std::filesystem::path& path) {
-  requireFile(path, "name an image");
+  requireFile(path, "give an image in it");
   const auto format = findImageFormat(path);
   if (!format)
     throw inputError(path, "has an unknown extension; give an image ", imageExtensions);

@@ -28,9 +28,9 @@ void checkPixels(const std::filesystem::path& path, const itk::ImageIOBase& io,
                  Components allowed) {
   using Pixel = itk::IOPixelEnum;
   const Pixel type = io.GetPixelType();
-  const bool scalar = io.GetNumberOfComponents() == 1 && type != Pixel::COMPLEX;
-  const bool list = allowed == Components::any && type == Pixel::VECTOR;
-  if (!scalar && !list)
+  const bool isScalar = io.GetNumberOfComponents() == 1 && type != Pixel::COMPLEX;
+  const bool isList = allowed == Components::any && type == Pixel::VECTOR;
+  if (!isScalar && !isList)
     throw inputError(path, "has ", io.GetNumberOfComponents(), " components per voxel (",
                      itk::ImageIOBase::GetPixelTypeAsString(type),
                      "); convert it to one scalar per voxel");

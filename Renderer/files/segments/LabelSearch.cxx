@@ -64,7 +64,8 @@ FoundNames readRequestedNames(const std::filesystem::path& path, const std::stri
   if (auto table = findBuiltInLabelNames(requested))
     return {*table, requested};
   if (!fileExists(requested))
-    throw usageError("--labels ", sanitize(requested), ": is neither a file nor totalsegmentator, ",
+    throw usageError("--labels ", sanitize(requested),
+                     ": is neither a file nor a built-in table; give a file, totalsegmentator, ",
                      join(listBuiltInLabelTables(), ", "));
   const InputConfinement anywhere(std::nullopt);
   return {readLabelNames(requested), requested};
@@ -77,9 +78,9 @@ FoundNames readSiblingNames(const std::filesystem::path& path,
     const std::string file = table.file.string();
     try {
       LabelNames names = readLabelNames(table.file);
-      const bool fits = countNamed(names, values) == values.size() &&
-                        (!table.mustMatchExactly || names.size() == values.size());
-      if (fits)
+      const bool isMatch = countNamed(names, values) == values.size() &&
+                           (!table.mustMatchExactly || names.size() == values.size());
+      if (isMatch)
         return {std::move(names), file, std::move(found.warnings)};
       found.warnings.push_back(concat(file, ": does not match the values of ", path.filename(),
                                       " and is not used; --labels ", file, " forces its use"));

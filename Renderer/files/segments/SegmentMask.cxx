@@ -24,7 +24,7 @@ struct VoxelExtent {
   Size3 lower = Size3::Constant(std::numeric_limits<std::int64_t>::max());
   Size3 upper = Size3::Constant(-1);
 
-  bool empty() const { return upper.x() < 0; }
+  bool isEmpty() const { return upper.x() < 0; }
   void add(const VoxelExtent& more) {
     lower = lower.cwiseMin(more.lower);
     upper = upper.cwiseMax(more.upper);
@@ -84,10 +84,10 @@ private:
 
 /// Selected voxels of one labelmap.
 template <typename Label>
-class Focus {
+class SelectedVoxels {
 public:
-  Focus(const Grid& grid, std::size_t layerCount, const LargeArray<Label>& labels,
-        const std::vector<SegmentInfo>& chosen)
+  SelectedVoxels(const Grid& grid, std::size_t layerCount, const LargeArray<Label>& labels,
+                 const std::vector<SegmentInfo>& chosen)
       : m_grid(grid), m_layerCount(layerCount), m_labels(labels), m_values(layerCount) {
     for (const SegmentInfo& segment : chosen)
       m_values[segment.layer].insert(segment.labelValue);
@@ -95,9 +95,9 @@ public:
 
   /// Sets the mask's grid, voxels and count, cropped to the selected voxels; leaves it unchanged if
   /// there are none. Voxels of `extended` beyond the labelmap repeat its outermost ones, uncounted.
-  void fill(Mask& mask, const VoxelExtent& extendToVolume) const {
-    const VoxelExtent extent = this->extent();
-    if (extent.empty())
+  void fill(Mask& mask, const VoxelExtent& extended) const {
+    const VoxelExtent extent = computeExtent();
+    if (extent.isEmpty())
       return;
     const Size3 origin = extent.lower.array() - 1;
     const Size3 size = extent.upper - extent.lower + Size3::Constant(3);
@@ -110,7 +110,7 @@ public:
       std::uint8_t* to = mask.voxels.data() + size.x() * size.y() * z;
       std::int64_t count = 0;
       for (std::int64_t y = 0; y < size.y(); ++y, to += size.x())
-        count += fillRow(origin + Size3(0, y, z), size.x(), extendToVolume, to);
+        count += fillRow(origin + Size3(0, y, z), size.x(), extended, to);
       total += count;
     });
     mask.count = total;
@@ -119,11 +119,11 @@ public:
 private:
   /// Writes `count` voxels from `first` on, into zeroed memory. Returns the number of selected
   /// voxels inside the labelmap.
-  std::int64_t fillRow(const Size3& first, std::int64_t count, const VoxelExtent& extendToVolume,
+  std::int64_t fillRow(const Size3& first, std::int64_t count, const VoxelExtent& extended,
                        std::uint8_t* to) const {
     const Size3 last = m_grid.size.array() - 1, nearest = first.cwiseMax(0).cwiseMin(last);
     const auto isExtended = [&](int axis, std::int64_t at) {
-      return at >= extendToVolume.lower[axis] && at <= extendToVolume.upper[axis];
+      return at >= extended.lower[axis] && at <= extended.upper[axis];
     };
     if (!isExtended(1, first.y()) || !isExtended(2, first.z()))
       return 0;
@@ -151,13 +151,13 @@ private:
     return false;
   }
 
-  VoxelExtent extent() const {
+  VoxelExtent computeExtent() const {
     return tbb::parallel_reduce(
         tbb::blocked_range<std::int64_t>(0, m_grid.size.z()), VoxelExtent(),
         [this](const tbb::blocked_range<std::int64_t>& slices, VoxelExtent extent) {
           for (std::int64_t z = slices.begin(); z < slices.end(); ++z)
             for (std::int64_t y = 0; y < m_grid.size.y(); ++y)
-              extent.add(rowExtent(y, z));
+              extent.add(computeRowExtent(y, z));
           return extent;
         },
         [](VoxelExtent extent, const VoxelExtent& more) {
@@ -166,7 +166,7 @@ private:
         });
   }
 
-  VoxelExtent rowExtent(std::int64_t y, std::int64_t z) const {
+  VoxelExtent computeRowExtent(std::int64_t y, std::int64_t z) const {
     const Label* const row = labelRow(y, z);
     std::int64_t first = 0;
     std::int64_t last = m_grid.size.x() - 1;
@@ -217,7 +217,7 @@ void countVoxels(const LargeArray<Label>& labels, const Size3& size, std::size_t
 }
 
 /// Axis-aligned world bounds of voxels, including their full extent.
-Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
+Box computeWorldBounds(const Grid& grid, const VoxelExtent& extent) {
   const Box voxels{extent.lower.cast<double>().array() - 0.5,
                    extent.upper.cast<double>().array() + 0.5};
   Box bounds = Box::makeEmpty();
@@ -229,11 +229,11 @@ Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
 // ---- messages
 
 std::string formatSegments(const std::vector<SegmentInfo>& segments) {
-  const auto named = [](const SegmentInfo& segment) {
+  const auto format = [](const SegmentInfo& segment) {
     const std::string id = sanitize(segment.id);
     return segment.name == segment.id ? id : concat(id, " (", sanitize(segment.name), ')');
   };
-  return join(segments, ", ", named, 12);
+  return join(segments, ", ", format, 12);
 }
 
 /// True if each word of the selector, ignoring a final s, begins a word of the name: "Kidneys" and
@@ -306,7 +306,7 @@ std::vector<SegmentStatistics> Segmentation::statistics() const {
     const ValueStatistics& value = layers[segment.layer].at(segment.labelValue);
     statistics.push_back({value.voxels, {}});
     if (value.voxels > 0)
-      statistics.back().bounds = worldBounds(m_grid, value.extent);
+      statistics.back().bounds = computeWorldBounds(m_grid, value.extent);
   }
   return statistics;
 }
@@ -314,7 +314,8 @@ std::vector<SegmentStatistics> Segmentation::statistics() const {
 Mask Segmentation::makeFocusMask(const std::vector<std::string>& selectors, const Grid& volume,
                                  const MaskShaping& shaping) const {
   if (shaping.margins.size() > 1 && shaping.margins.size() != selectors.size())
-    throw usageError("--margin: give one value for all segments of --focus, or one per segment");
+    throw usageError("--margin: has ", shaping.margins.size(),
+                     " values; give one for all segments of --focus, or one per segment");
   std::vector<SegmentInfo> chosen;
   for (const std::string& selector : selectors)
     chosen.push_back(m_segments[find(selector)]);
@@ -333,7 +334,8 @@ Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& 
       mask.names.push_back(segment.name);
     std::visit(
         [&](const auto& labels) {
-          Focus(m_grid, m_layerCount, labels, segments).fill(mask, extendToVolume(m_grid, volume));
+          SelectedVoxels(m_grid, m_layerCount, labels, segments)
+              .fill(mask, extendToVolume(m_grid, volume));
         },
         m_labels);
     if (mask.count == 0)

@@ -130,8 +130,7 @@ std::vector<double> readNumbers(const pugi::xml_node& array, const ArrayEncoding
   const std::string format = array.attribute("format").value();
   if (format == "ascii") {
     const std::string_view text = array.text().get();
-    charge(encoding.budget, text.size() / 2,
-           sizeof(double)); // a number takes at least 2 characters
+    charge(encoding.budget, text.size() / 2, sizeof(double)); // a number takes 2 characters or more
     auto numbers = parseNumbers(text);
     if (!numbers)
       throw damagedSurface;
@@ -250,8 +249,8 @@ VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std:
     if (!document.load_file(path.c_str()))
       throw damagedSurface;
     return readSurface(document, fieldData, budget);
-  } catch (const SurfaceError& refused) {
-    throw inputError(path, refused.reason,
+  } catch (const SurfaceError& error) {
+    throw inputError(path, error.reason,
                      "; export the segmentation in Slicer as a binary labelmap (.seg.nrrd)");
   }
 }

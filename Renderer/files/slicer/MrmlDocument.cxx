@@ -163,8 +163,8 @@ Error MrmlDocument::error(const MrmlNode& node, const std::string& what) const {
   return inputError(m_source, node.tag, " ", describeNode(node), ": ", what);
 }
 
-MakeError MrmlDocument::errorMaker(const MrmlNode& node, const std::string& subject,
-                                   const std::string& hint) const {
+MakeError MrmlDocument::bindError(const MrmlNode& node, const std::string& subject,
+                                  const std::string& hint) const {
   return [=, this, &node](const std::string& what) { return error(node, subject + what + hint); };
 }
 

@@ -59,9 +59,9 @@ public:
 
   /// Error (input) that states the file and the node.
   Error error(const MrmlNode& node, const std::string& what) const;
-  /// Factory of such errors for a check; adds `subject` before the fault and `hint` after it.
-  MakeError errorMaker(const MrmlNode& node, const std::string& subject = "",
-                       const std::string& hint = "") const;
+  /// Factory of such errors for a check; adds `subject` before its text and `hint` after it.
+  MakeError bindError(const MrmlNode& node, const std::string& subject = "",
+                      const std::string& hint = "") const;
 
 private:
   std::string m_source, m_version;

@@ -98,11 +98,11 @@ Affine readInlineRoi(const MrmlScene& scene, const MrmlNode& roi) {
     text = roi.text("xyz") + roi.text("XYZ") + " " + roi.text("radiusXYZ") + roi.text("RadiusXYZ");
   std::replace(text.begin(), text.end(), '|', ' ');
   return makeAlignedBox(parseNumbers(text).value_or(std::vector<double>()),
-                        scene.document.errorMaker(roi));
+                        scene.document.bindError(roi));
 }
 
 Affine readBox(MrmlScene& scene, const MrmlNode& roi) {
-  rejectInsideOut(roi.boolean("insideOut", false), scene.document.errorMaker(roi));
+  rejectInsideOut(roi.boolean("insideOut", false), scene.document.bindError(roi));
   const std::vector<std::string> names = listStorageFiles(scene, roi);
   if (names.empty())
     return readInlineRoi(scene, roi);
@@ -117,7 +117,7 @@ Affine readBox(MrmlScene& scene, const MrmlNode& roi) {
 CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi) {
   return CropBox(checkAffine(
       toWorld(scene, roi) * readBox(scene, roi),
-      scene.document.errorMaker(roi, "its world transform ", "; fix it in the Markups module")));
+      scene.document.bindError(roi, "its world transform ", "; fix it in the Markups module")));
 }
 
 } // namespace fenestra

@@ -33,8 +33,8 @@ Grid applyStorageSettings(const MrmlNode* storage, const Grid& fromFile) {
 Grid transformGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& nodeToWorld,
                    const Grid& grid) {
   return {grid.size, checkAffine(nodeToWorld * grid.indexToWorld,
-                                 scene.document.errorMaker(node, "its world transform ",
-                                                           "; fix the transforms above it"))};
+                                 scene.document.bindError(node, "its world transform ",
+                                                          "; fix the transforms above it"))};
 }
 
 /// Names of the files that hold a node's data. Throws Error (input) if there are none.
@@ -145,8 +145,7 @@ std::map<std::string, bool> readSegmentVisibility(const MrmlScene& scene, const 
   if (!display)
     return visible;
   for (const std::string& segment : split(display->text("SegmentationDisplayProperties"), '|'))
-    if (const std::vector<std::string> parts = splitWords(segment);
-        !parts.empty()) // id, then settings
+    if (const std::vector<std::string> parts = splitWords(segment); !parts.empty()) // id, settings
       visible[decodeUrl(parts.front())] =
           std::none_of(parts.begin() + 1, parts.end(), [](const std::string& setting) {
             return setting == "Visible:false" || setting == "Visible3D:false";
@@ -193,9 +192,9 @@ std::optional<TransferFunction> convertSliceDisplay(const MrmlNode& rendering,
   const double high = low + window;
 
   const bool usesWindow = rendering.boolean("ignoreVolumeDisplayNodeThreshold", false);
-  const auto inRange = [&range](double x) { return std::clamp(x, range[0], range[1]); };
-  const double from = inRange(usesWindow ? low : number("lowerThreshold", range[0]));
-  const double to = std::max(from, inRange(usesWindow ? high : number("upperThreshold", range[1])));
+  const auto clamp = [&range](double x) { return std::clamp(x, range[0], range[1]); };
+  const double from = clamp(usesWindow ? low : number("lowerThreshold", range[0]));
+  const double to = std::max(from, clamp(usesWindow ? high : number("upperThreshold", range[1])));
   const double beyond = usesWindow ? 1.0 : 0.0;
 
   VolumeProperty property;

@@ -19,7 +19,7 @@ std::optional<Affine> readMatrix(const MrmlScene& scene, const MrmlNode& node,
     return std::nullopt;
   const auto numbers = node.numbers(attribute);
   const MakeError makeError =
-      scene.document.errorMaker(node, attribute + ": ", "; fix it in the Transforms module");
+      scene.document.bindError(node, attribute + ": ", "; fix it in the Transforms module");
   if (!numbers || numbers->size() != 16)
     throw makeError("must be 16 numbers");
   const auto row = [&numbers](std::size_t i) { // first three of the row's four numbers
@@ -46,7 +46,7 @@ std::optional<Affine> readInlineMatrix(const MrmlScene& scene, const MrmlNode& n
   return std::nullopt;
 }
 
-std::variant<Affine, Error> readOrError(MrmlScene& scene, const std::string& file) {
+std::variant<Affine, Error> tryReadTransform(MrmlScene& scene, const std::string& file) {
   try {
     return scene.files.read({file},
                             [](const auto& files) { return readLinearTransform(files.front()); });
@@ -58,7 +58,7 @@ std::variant<Affine, Error> readOrError(MrmlScene& scene, const std::string& fil
 Affine loadTransform(MrmlScene& scene, const std::string& file) {
   auto known = scene.transformFiles.find(file);
   if (known == scene.transformFiles.end())
-    known = scene.transformFiles.emplace(file, readOrError(scene, file)).first;
+    known = scene.transformFiles.emplace(file, tryReadTransform(scene, file)).first;
   else if (scene.files.contains(file))
     scene.files.locate(file); // records that the scene uses the file
   if (const Error* error = std::get_if<Error>(&known->second))
@@ -102,8 +102,8 @@ Affine toWorld(MrmlScene& scene, const MrmlNode& node) {
     result = toParent(scene, *above) * result;
   }
   return checkAffine(result,
-                     scene.document.errorMaker(node, "the product of the transforms above it ",
-                                               "; fix them in the Transforms module"));
+                     scene.document.bindError(node, "the product of the transforms above it ",
+                                              "; fix them in the Transforms module"));
 }
 
 CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
@@ -138,7 +138,7 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
     pose.target = change * pose.target;
     pose.up = change.linear() * pose.up;
   }
-  return validatePose(pose, scene.document.errorMaker(camera, "has a bad pose: ", "; give --view"));
+  return validatePose(pose, scene.document.bindError(camera, "has a bad pose: ", "; give --view"));
 }
 
 } // namespace fenestra

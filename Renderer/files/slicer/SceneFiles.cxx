@@ -141,7 +141,7 @@ void SceneArchive::extract(const std::filesystem::path& file,
   const std::uint64_t entry = m_files.at(file);
   const std::uint64_t size = stat(entry, file).size;
   if (size > m_remainingBytes)
-    throw error(file, "exceeds, with the files before it, the unpacked size of a scene in an "
+    throw error(file, "unpacks, together with the files before it, to more than the limit for an "
                       "archive of this size; save the scene again, or unpack it yourself");
   m_remainingBytes -= size;
   const auto makeUnpackError = [&](int code) {
@@ -176,7 +176,7 @@ std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t 
 
 namespace {
 
-std::ptrdiff_t depth(const std::filesystem::path& file) {
+std::ptrdiff_t countParts(const std::filesystem::path& file) {
   return std::distance(file.begin(), file.end());
 }
 
@@ -196,8 +196,8 @@ std::filesystem::path findMainScene(const SceneArchive& archive,
       closest.push_back(file);
   if (closest.empty())
     throw inputError(path, "has no .mrml, so it is not a scene; save it again from Slicer");
-  const auto least = depth(*std::ranges::min_element(closest, {}, depth));
-  std::erase_if(closest, [least](const auto& file) { return depth(file) > least; });
+  const auto least = countParts(*std::ranges::min_element(closest, {}, countParts));
+  std::erase_if(closest, [least](const auto& file) { return countParts(file) > least; });
   if (closest.size() == 1)
     return closest.front();
   std::vector<std::filesystem::path> named;
@@ -270,12 +270,12 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   };
   if (!m_archive) {
     std::error_code failed;
-    const bool isThere = std::filesystem::exists(file, failed);
+    const bool exists = std::filesystem::exists(file, failed);
     if (failed)
       throw makeError(file,
                       concat("cannot be read: ", systemMessage(failed.value()), "; ",
                              readHint(failed.value(), "check the permissions of its folder")));
-    if (!isThere)
+    if (!exists)
       throw makeError(file, "does not exist; restore it, or save the scene again");
     m_usedFiles.insert(file);
     return file;
@@ -284,13 +284,13 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
     throw makeError(name, "is outside the archive; save the scene again");
   if (!m_archive->files().contains(file))
     throw makeError(file, "is not in the archive; save the scene again");
-  std::filesystem::path place = unpack(file);
+  std::filesystem::path unpacked = unpack(file);
   const std::filesystem::path root = m_unpackFolder->path().lexically_normal();
-  for (const std::filesystem::path& part : findReferencedFiles(place))
+  for (const std::filesystem::path& part : findReferencedFiles(unpacked))
     if (const auto beside = part.lexically_normal().lexically_relative(root);
         m_archive->files().contains(beside))
       unpack(beside);
-  return place;
+  return unpacked;
 }
 
 std::filesystem::path SceneFiles::unpack(const std::filesystem::path& file) {

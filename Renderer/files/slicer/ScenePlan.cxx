@@ -31,13 +31,13 @@ std::string formatNodes(const Nodes& nodes) {
 
 /// Node by id, else by name; null: none. Throws Error (input) if several have the name.
 const MrmlNode* findNamed(const MrmlDocument& document, const Nodes& nodes, const std::string& name,
-                          const std::string& flag) {
+                          const std::string& option) {
   const Nodes byId = filterNodes(nodes, [&](const MrmlNode& node) { return node.id == name; });
   if (!byId.empty())
     return byId.front();
   const Nodes byName = filterNodes(nodes, [&](const MrmlNode& node) { return node.name == name; });
   if (byName.size() > 1)
-    throw inputError(document.source(), "--", flag, " ", name,
+    throw inputError(document.source(), "--", option, " ", name,
                      " matches several: ", formatNodes(byName), "; choose one by its id");
   return byName.empty() ? nullptr : byName.front();
 }
@@ -45,11 +45,11 @@ const MrmlNode* findNamed(const MrmlDocument& document, const Nodes& nodes, cons
 /// Node of the first list that is not empty; null: all are empty. Throws Error (input) if that list
 /// has several nodes.
 const MrmlNode* findSingle(const MrmlDocument& document, std::initializer_list<const Nodes*> lists,
-                           const char* what, const char* flag) {
+                           const char* what, const char* option) {
   for (const Nodes* candidates : lists)
     if (candidates->size() > 1)
       throw inputError(document.source(), "has several ", what, " (", formatNodes(*candidates),
-                       "); choose one with --", flag);
+                       "); choose one with --", option);
     else if (!candidates->empty())
       return candidates->front();
   return nullptr;
@@ -131,11 +131,11 @@ int rankView(const MrmlNode& view) {
 const MrmlNode* chooseView(const MrmlDocument& document, const MrmlNode* rendering) {
   Nodes views = document.findByTag("View");
   if (rendering && rendering->references.contains("view")) {
-    const std::vector<std::string>& inViews = rendering->references.at("view");
-    const std::set<std::string> ids(inViews.begin(), inViews.end());
-    const Nodes own =
+    const std::vector<std::string>& viewIds = rendering->references.at("view");
+    const std::set<std::string> ids(viewIds.begin(), viewIds.end());
+    const Nodes matching =
         filterNodes(views, [&](const MrmlNode& view) { return ids.contains(view.id); });
-    views = own.empty() ? views : own;
+    views = matching.empty() ? views : matching;
   }
   const auto best =
       std::max_element(views.begin(), views.end(), [](const MrmlNode* a, const MrmlNode* b) {

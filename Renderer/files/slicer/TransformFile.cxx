@@ -299,8 +299,7 @@ Affine parseTransformReply(const Path& path, std::string_view reply) {
     throw;
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception&) { // ITK: a matrix that its class forbids; ReplyReader: a
-                                    // malformed reply
+  } catch (const std::exception&) { // ITK: forbidden matrix; ReplyReader: malformed reply
     throwDamaged(path);
   }
 }

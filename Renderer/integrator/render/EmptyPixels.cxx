@@ -26,8 +26,8 @@ std::pair<int, int> findTiles(double low, double high, int pixels, int tileSize)
 
 EmptyPixels::EmptyPixels(const Camera& camera, const MajorantGrid& majorants)
     : m_tilesPerRow(static_cast<std::size_t>((camera.width() + tileSize - 1) / tileSize)) {
-  const int down = (camera.height() + tileSize - 1) / tileSize;
-  const std::size_t tiles = m_tilesPerRow * static_cast<std::size_t>(down);
+  const int tilesPerColumn = (camera.height() + tileSize - 1) / tileSize;
+  const std::size_t tiles = m_tilesPerRow * static_cast<std::size_t>(tilesPerColumn);
   const BoxProjection cells(camera, majorants.worldToCell().inverse());
   const double perPitch = 1.0 / camera.pixelPitch();
   tbb::combinable<std::vector<std::uint8_t>> parts(

@@ -8,8 +8,8 @@
 
 namespace fenestra {
 
-/// Pixels in whose area (the footprint of the box filter) no camera ray meets a cell of majorant
-/// > 0. If the background is constant within each pixel, all samples of such a pixel are equal.
+/// Pixels whose camera rays (anywhere in the box filter's footprint) cross no cell of majorant > 0.
+/// If the background is constant within each pixel, all samples of such a pixel are equal.
 class EmptyPixels {
 public:
   /// Contains no pixel.

@@ -23,7 +23,7 @@ constexpr std::uint64_t minNoiseSamples = SamplePlan::pilotSamples;
 /// Traces one path after another with the scalar integrator.
 template <typename Voxel>
 struct ScalarTracer {
-  PathIntegrator<Voxel> estimator;
+  PathIntegrator<Voxel> integrator;
 
   template <typename Source>
   bool trace(Source& source, std::size_t maxPaths, Counters& counters) const {
@@ -32,10 +32,10 @@ struct ScalarTracer {
       source.fill(*samples, std::min(maxPaths, RayBatch::capacity));
       for (std::size_t i = 0; i < samples->size; ++i) {
         const PrimarySamples numbers =
-            source.numbers().generate({samples->start[i], samples->key[i]}, samples->number[i]);
-        const Vec2 place = toUniform2(numbers.position) + Vec2(samples->column[i], samples->row[i]);
+            source.sampler().generate({samples->start[i], samples->key[i]}, samples->number[i]);
+        const Vec2 point = toUniform2(numbers.position) + Vec2(samples->column[i], samples->row[i]);
         const std::optional<PathSample> sample =
-            estimator.trace(place.x(), place.y(), numbers, counters);
+            integrator.trace(point.x(), point.y(), numbers, counters);
         if (!sample)
           return false;
         source.deliver(samples->tile[i], samples->tileSample[i], *sample);
@@ -70,8 +70,8 @@ std::uint64_t chooseNoisePassSize(const LastPass& last, const RenderSettings& se
   constexpr double maxPerPixel = 256.0;
   const double missing =
       static_cast<double>(done) * (std::pow(last.noise / settings.noise, 2.0) - 1.0);
-  const double room = maxPerPixel / last.plan.at(done + 1).maxRatio();
-  const auto most = static_cast<std::uint64_t>(std::max(1.0, std::min(missing, room)));
+  const double limit = maxPerPixel / last.plan.at(done + 1).maxRatio();
+  const auto most = static_cast<std::uint64_t>(std::max(1.0, std::min(missing, limit)));
   return std::min(choosePassSize(done - minNoiseSamples, settings), most);
 }
 
@@ -96,11 +96,11 @@ void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& t
   counters.combine_each([&](const Counters& local) { total += local; });
 }
 
-/// What all passes of a render share.
+/// Inputs that all passes of a render share.
 struct PassInputs {
   std::vector<int> tiles;
   EmptyPixels empty;
-  Sampler numbers;
+  Sampler sampler;
 };
 
 /// renderTiles, while remote workers render other tiles of the pass.
@@ -121,14 +121,14 @@ void renderWithWorkers(const Tracer& tracer, Pass& pass, RenderResult& result,
   result.counters += workers.join(monitor);
 }
 
-/// Renders the samples that the film lacks to stage `result.begunSamples`. Returns false if stopped
-/// before all were finished.
+/// Renders the samples that the film lacks up to stage `result.begunSamples`. Returns false if
+/// stopped before all were finished.
 template <typename Tracer>
-bool renderPass(const Tracer& tracer, const PassInputs& source, RenderResult& result,
+bool renderPass(const Tracer& tracer, const PassInputs& inputs, RenderResult& result,
                 RenderMonitor& monitor) {
   const SamplePlan& plan = result.last.plan;
-  Pass pass(source.tiles, plan.at(result.finishedSamples), plan.at(result.begunSamples),
-            source.empty, source.numbers, result.film, monitor.paths);
+  Pass pass(inputs.tiles, plan.at(result.finishedSamples), plan.at(result.begunSamples),
+            inputs.empty, inputs.sampler, result.film, monitor.paths);
   for (;;) {
     renderWithWorkers(tracer, pass, result, monitor);
     if (pass.isComplete() || monitor.stop)
@@ -205,10 +205,10 @@ public:
 
   /// Estimates the noise after a pass, if an estimate is due, into `monitor.noise`. Returns true if
   /// the target is reached. If the pass was not cut short, it becomes result.last.
-  bool isReached(RenderResult& result, bool isCut, RenderMonitor& monitor) const {
+  bool check(RenderResult& result, bool isShortened, RenderMonitor& monitor) const {
     const std::uint64_t done = result.finishedSamples;
     std::atomic<double>& noise = monitor.noise;
-    if (!isCut)
+    if (!isShortened)
       result.last.samples = done;
     if (hasDisplayNoise()) {
       if (nextNoiseCheck(done - 1) != done)
@@ -221,7 +221,7 @@ public:
       noise = result.film.noise();
     if (!isPlanned)
       return false;
-    if (!isCut)
+    if (!isShortened)
       result.last.noise = noise;
     if (done < minNoiseSamples)
       return false;
@@ -246,12 +246,12 @@ PassGrowth choosePassGrowth(const RenderMonitor& monitor) {
 }
 
 /// Result before the first sample.
-RenderResult makeEmptyResult(const Camera& camera, const Sampler& numbers) {
+RenderResult makeEmptyResult(const Camera& camera, const Sampler& sampler) {
   return {Film(camera.width(), camera.height(), Sampler::hasIndependentHalfBuffers,
-               numbers.samplesPerBlock())};
+               sampler.samplesPerBlock())};
 }
 
-/// True if all tiles of the film are exactly at the last pass.
+/// True if every pixel of the film is exactly at the end of result.last.
 bool isAtLastPass(const RenderResult& result) {
   const SamplePlan::Stage stage = result.last.plan.at(result.last.samples);
   const std::vector<PixelSums>& pixels = result.film.pixels();
@@ -262,23 +262,23 @@ bool isAtLastPass(const RenderResult& result) {
 }
 
 template <typename Tracer>
-RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
-                          const SceneView& scene, const RenderSettings& settings,
-                          RenderMonitor& monitor, std::optional<RenderResult> resumed) {
-  const Sampler numbers(settings.sampling, settings.seed);
-  RenderResult result = resumed ? std::move(*resumed) : makeEmptyResult(scene.camera, numbers);
+RenderResult renderPasses(const Tracer& tracer, const std::string& target, const SceneView& scene,
+                          const RenderSettings& settings, RenderMonitor& monitor,
+                          std::optional<RenderResult> resumed) {
+  const Sampler sampler(settings.sampling, settings.seed);
+  RenderResult result = resumed ? std::move(*resumed) : makeEmptyResult(scene.camera, sampler);
   result.reason = StopReason::samples;
-  result.target = arithmetic;
+  result.target = target;
   if (!settings.isAdaptive())
     result.last = {result.last.samples}; // ignores an adaptive plan of an earlier run
-  const PassInputs source{Tiles(result.film.width(), result.film.height()).select(settings.shard),
-                          markEmptyPixels(scene, settings, result.film), numbers};
+  const PassInputs inputs{Tiles(result.film.width(), result.film.height()).select(settings.shard),
+                          markEmptyPixels(scene, settings, result.film), sampler};
   monitor.paths = result.finishedSamples * result.film.pixelCount() /
                   static_cast<std::size_t>(settings.shard.count);
-  const NoiseLimit target(settings, choosePassGrowth(monitor));
+  const NoiseLimit noiseLimit(settings, choosePassGrowth(monitor));
   TimeBudget budget(settings.seconds);
-  const auto checkNoise = [&](bool isCut) {
-    const bool isReached = target.isReached(result, isCut, monitor);
+  const auto checkNoise = [&](bool isShortened) {
+    const bool isReached = noiseLimit.check(result, isShortened, monitor);
     if (isReached)
       result.reason = StopReason::noise;
     return isReached;
@@ -288,7 +288,7 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
   while (result.finishedSamples < settings.samples) {
     const std::uint64_t done = result.finishedSamples;
     const std::uint64_t passEnd =
-        std::max(result.last.samples + target.nextPass(result.last), done + 1);
+        std::max(result.last.samples + noiseLimit.nextPass(result.last), done + 1);
     const std::uint64_t count =
         std::min({passEnd - done, settings.samples - done, budget.affordableSamples()});
     if (count == 0) {
@@ -300,7 +300,7 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
     if (monitor.isCheckpointDue && monitor.isCheckpointDue())
       monitor.onCheckpoint(result);
     result.begunSamples = done + count;
-    if (!renderPass(tracer, source, result, monitor)) {
+    if (!renderPass(tracer, inputs, result, monitor)) {
       result.reason = StopReason::request;
       return result;
     }
@@ -317,13 +317,13 @@ template <typename Tracer>
 void renderEachLease(const Tracer& tracer, const SceneView& scene, const RenderSettings& settings,
                      RenderMonitor& monitor,
                      const std::function<std::optional<TileLease>(RenderResult&)>& next) {
-  const Sampler numbers(settings.sampling, settings.seed);
-  RenderResult result = makeEmptyResult(scene.camera, numbers);
+  const Sampler sampler(settings.sampling, settings.seed);
+  RenderResult result = makeEmptyResult(scene.camera, sampler);
   const EmptyPixels empty = markEmptyPixels(scene, settings, result.film);
   while (const std::optional<TileLease> lease = next(result)) {
     result.counters = {};
     const SamplePlan& plan = result.last.plan;
-    Pass pass(lease->tiles, plan.at(lease->from), plan.at(lease->to), empty, numbers, result.film,
+    Pass pass(lease->tiles, plan.at(lease->from), plan.at(lease->to), empty, sampler, result.film,
               monitor.paths);
     renderTiles(tracer, pass, result.film, result.counters, monitor);
   }
@@ -389,8 +389,8 @@ std::string findTarget(const SceneView& scene, const RenderSettings& settings) {
 RenderResult render(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
                     std::optional<RenderResult> resumed) {
   return traceScene(
-      scene, settings, monitor.stop, [&](const auto& tracer, const std::string& arithmetic) {
-        return renderPasses(tracer, arithmetic, scene, settings, monitor, std::move(resumed));
+      scene, settings, monitor.stop, [&](const auto& tracer, const std::string& target) {
+        return renderPasses(tracer, target, scene, settings, monitor, std::move(resumed));
       });
 }
 

@@ -20,7 +20,7 @@
 
 namespace fenestra {
 
-/// What integrators read. Non-owning: all referenced objects must outlive the render.
+/// Inputs of the integrators. Non-owning: all referenced objects must outlive the render.
 struct SceneView {
   const Volume& volume;
   const TransferFunction& transfer;
@@ -148,10 +148,10 @@ struct TileLease {
   std::uint64_t from = 0, to = 0;
 };
 
-/// Renders tiles for the process that has this one among its remote workers. `next` takes the last
-/// lease's tiles from result.film, with result.counters, unless the stop flag is set. It then puts
-/// the pixels of the next lease there, and the plan into result.last, and returns that lease;
-/// nothing at the end.
+/// Renders tiles as a remote worker of another process. `next` first collects the finished tiles of
+/// the last lease from result.film, and result.counters, unless the stop flag is set. It then
+/// stores the pixels of the next lease in result.film and the plan in result.last, and returns that
+/// lease; nothing at the end.
 void renderLeases(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
                   const std::function<std::optional<TileLease>(RenderResult&)>& next);
 

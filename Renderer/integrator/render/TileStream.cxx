@@ -3,14 +3,14 @@
 namespace fenestra {
 
 Pass::Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
-           const EmptyPixels& empty, const Sampler& source, Film& film,
+           const EmptyPixels& empty, const Sampler& sampler, Film& film,
            std::atomic<std::uint64_t>& paths)
     : m_tiles(tiles),
       m_tileGrid(film.width(), film.height()),
       m_from(from),
       m_to(to),
       m_empty(empty),
-      m_sampler(source),
+      m_sampler(sampler),
       m_film(film),
       m_paths(paths) {}
 
@@ -94,12 +94,12 @@ void TileStream::listSamples(Tile& tile, int index) const {
   tile.planned = m_pass.forEachPixel(index, [&](int column, int row, std::size_t here) {
     const std::uint64_t begin = m_pass.m_film.pixels()[here].samples;
     const std::uint64_t end = m_pass.m_to.count(here);
-    const std::uint64_t enough =
+    const std::uint64_t target =
         m_pass.m_empty.contains(column, row) ? std::min<std::uint64_t>(1, end) : end;
-    if (begin >= enough)
+    if (begin >= target)
       return;
-    tile.runs.push_back({column, row, begin, enough});
-    tile.pending += enough - begin;
+    tile.runs.push_back({column, row, begin, target});
+    tile.pending += target - begin;
   });
 }
 

@@ -22,7 +22,7 @@ public:
   /// Non-owning: tiles, plan, empty pixels and film must outlive the pass. Each finished tile adds
   /// its samples from stage `from` to `to` to `paths`; empty pixels count in full.
   Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
-       const EmptyPixels& empty, const Sampler& source, Film& film,
+       const EmptyPixels& empty, const Sampler& sampler, Film& film,
        std::atomic<std::uint64_t>& paths);
 
   /// True once all tiles have been added to the film.
@@ -77,7 +77,7 @@ public:
       : m_pass(pass), m_isPaused(isPaused) {}
 
   /// Generator of the samples' random numbers.
-  const Sampler& numbers() const { return m_pass.m_sampler; }
+  const Sampler& sampler() const { return m_pass.m_sampler; }
   /// Replaces `samples` by the next ones, at most `maxCount`; fewer only if no more are left.
   void fill(CameraSamples& samples, std::size_t maxCount);
   /// Accepts results in any order. A tile is added to the film as a unit, with its last result, and

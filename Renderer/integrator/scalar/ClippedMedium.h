@@ -22,7 +22,7 @@ MixturePoint makeMixturePoint(const Medium<Voxel>& medium, const Clip& clip, con
                           medium.mixtureField()->hasUnclipped() ? clipWeight(clip, world) : 1.0);
 }
 
-/// Medium at a collision: of a mixture, one component sampled by its part of the extinction.
+/// Medium at a collision: of a mixture, one component, sampled in proportion to its extinction.
 template <typename Voxel>
 MediumSample sampleMedium(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
                           const Vec3& index, bool wantGradient, Random& random) {

@@ -39,9 +39,9 @@ Corners findCorners(const Affine& cellToWorld, const Vec3& cell, const Vec3& mar
 /// interpolation reads there is at least threshold(). Outside the mask the border voxels repeat.
 bool canReachMask(const Mask& mask, const Box& box) {
   const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
-  const auto within = [&](const Vec3& index) { return index.cwiseMax(0.0).cwiseMin(last); };
-  const Size3 first = within(box.lower.array().floor()).cast<std::int64_t>();
-  const Size3 end = within(box.upper.array().ceil()).cast<std::int64_t>().array() + 1;
+  const auto clampIndex = [&](const Vec3& index) { return index.cwiseMax(0.0).cwiseMin(last); };
+  const Size3 first = clampIndex(box.lower.array().floor()).cast<std::int64_t>();
+  const Size3 end = clampIndex(box.upper.array().ceil()).cast<std::int64_t>().array() + 1;
   const Size3& size = mask.grid.size;
   for (std::int64_t z = first.z(); z < end.z(); ++z)
     for (std::int64_t y = first.y(); y < end.y(); ++y) {
@@ -112,14 +112,14 @@ MajorantGrid::MajorantGrid(const Grid& grid, const MinMaxGrid& ranges,
                   (makeTranslation(Vec3::Constant(0.5)) * grid.worldToIndex);
   const Affine cellToWorld = m_worldToCell.inverse();
 
-  const Vec3 strip = margin * ranges.cellSize().cast<double>().cwiseInverse();
+  const Vec3 marginInCells = margin * ranges.cellSize().cast<double>().cwiseInverse();
   tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
       for (std::int64_t x = 0; x < m_cellCount.x(); ++x) {
         const auto cell = static_cast<std::size_t>(x + m_cellCount.x() * (y + m_cellCount.y() * z));
         const double low = ranges.low(cell), high = ranges.high(cell);
         const auto corners = [&] {
-          return findCorners(cellToWorld, Size3(x, y, z).cast<double>(), strip);
+          return findCorners(cellToWorld, Size3(x, y, z).cast<double>(), marginInCells);
         };
         const CellBound bound = mixture ? boundMixture(*mixture, grid, corners(), low, high)
                                         : CellBound{findMaximum(transfer, grid, low, high)};

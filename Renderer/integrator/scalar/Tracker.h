@@ -30,7 +30,7 @@ double findRealCollision(Walk&& walk, double acceptance, Random& random) {
   return distance;
 }
 
-/// Transmittance by ratio tracking (Novak et al. 2014), with Russian roulette below 0.4.
+/// Transmittance by ratio tracking (Novák et al. 2014), with Russian roulette below 0.4.
 template <typename Walk>
 double trackRatio(Walk&& walk, Random& random) {
   constexpr double rouletteThreshold = 0.4;

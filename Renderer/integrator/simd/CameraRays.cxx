@@ -27,9 +27,9 @@ void sampleAll(const CameraTable& camera, CameraSamples& samples, PathBatch& pat
     store(load(&samples.tileSample[i]), &paths.tileSample[to]);
     store(numbers.collision[0], &paths.rays.depthBits[to]);
     store(toUniformBelow1(numbers.collision[1]), &paths.rays.acceptance[to]);
-    for (const std::size_t which : {0U, 1U}) {
-      store(toUniformBelow1(numbers.direction[which]), &paths.uDirection[which][to]);
-      store(toUniform(numbers.choices[which]), &paths.uChoices[which][to]);
+    for (const std::size_t k : {0U, 1U}) {
+      store(toUniformBelow1(numbers.direction[k]), &paths.uDirection[k][to]);
+      store(toUniform(numbers.choices[k]), &paths.uChoices[k][to]);
     }
     store(numbers.pathSeed[0], &paths.counter[to]);
     store(numbers.pathSeed[1], &paths.key[to]);
@@ -50,16 +50,16 @@ void beginAll(const SimdMedium& medium, const CameraTable& camera, const CameraS
     const Float3 point = at(camera.point, camera.pointPerColumn, camera.pointPerRow);
     LaneIntervals inside{clampZero(load(&samples.from[i])), load(&samples.to[i])};
     inside.clip(medium, point, direction);
-    const LaneMask some = inside.begin < inside.end;
-    const Float before = zeroUnless(some, inside.begin);
+    const LaneMask isInside = inside.begin < inside.end;
+    const Float entry = zeroUnless(isInside, inside.begin);
 
     const std::size_t to = paths.rays.size + i;
-    store3(point + before * direction, paths.rays.origin, to);
+    store3(point + entry * direction, paths.rays.origin, to);
     store3(direction, paths.rays.direction, to);
-    store(zeroUnless(some, inside.end - before), &paths.rays.length[to]);
+    store(zeroUnless(isInside, inside.end - entry), &paths.rays.length[to]);
     store3(world, paths.direction, to);
     store3(world, paths.cameraDirection, to);
-    store(before * depthPerLength, &paths.depth[to]);
+    store(entry * depthPerLength, &paths.depth[to]);
     store(depthPerLength, &paths.depthPerLength[to]);
     store3({1.0F, 1.0F, 1.0F}, paths.throughput, to);
     store3({0.0F, 0.0F, 0.0F}, paths.radiance, to);
@@ -89,14 +89,14 @@ CameraTable::CameraTable(const Domain& domain, const Camera& camera)
   nearDepth = std::max(nearDepth, 0.0);
 
   const bool perspective = camera.pose().projection == Projection::perspective;
-  const double turn = perspective ? camera.pixelPitch() / camera.targetDepth() : 0.0;
-  const double step = perspective ? turn * nearDepth : camera.pixelPitch();
+  const double slope = perspective ? camera.pixelPitch() / camera.targetDepth() : 0.0;
+  const double step = perspective ? slope * nearDepth : camera.pixelPitch();
   const Mat3& linear = grid.worldToIndex.linear();
   point = narrow3(grid.worldToIndex * (camera.pose().position + nearDepth * camera.forward()));
   pointPerColumn = narrow3(linear * (step * camera.right()));
   pointPerRow = narrow3(linear * (-step * camera.up()));
-  forwardPerColumn = narrow3(turn * camera.right());
-  forwardPerRow = narrow3(-turn * camera.up());
+  forwardPerColumn = narrow3(slope * camera.right());
+  forwardPerRow = narrow3(-slope * camera.up());
   toIndex = affineRows(Affine(linear));
 }
 
@@ -111,9 +111,9 @@ void beginPaths(const SimdMedium& medium, const CameraTable& table, const Camera
       const Ray ray = cameraRays.ray(double{table.middleColumn} + double{samples.column[i]},
                                      double{table.middleRow} + double{samples.row[i]});
       const Interval range = cameraRays.range(ray);
-      const double before = table.nearDepth / cameraRays.depth(ray, 1.0);
-      samples.from[i] = narrow(range.begin - before);
-      samples.to[i] = narrow(range.end - before);
+      const double nearDistance = table.nearDepth / cameraRays.depth(ray, 1.0);
+      samples.from[i] = narrow(range.begin - nearDistance);
+      samples.to[i] = narrow(range.end - nearDistance);
     }
   }
   HWY_DYNAMIC_DISPATCH(beginAll)(medium, table, samples, paths);

@@ -19,9 +19,9 @@ struct ViewPoints {
 HWY_INLINE ViewPoints mapToView(const SimdMedium& medium, const Float3& p) {
   ViewPoints at{0.0F, 0.0F, applyRow(medium.toView[2], p), 1.0F, LaneMask::none()};
   if (medium.perspective) {
-    const Float fromEye = at.depth + medium.targetDepth;
-    at.isBehindCamera = fromEye <= 0.0F;
-    at.scale = medium.targetDepth / fromEye;
+    const Float fromCamera = at.depth + medium.targetDepth;
+    at.isBehindCamera = fromCamera <= 0.0F;
+    at.scale = medium.targetDepth / fromCamera;
   }
   if (medium.clipKind == SimdMedium::ClipKind::plane)
     return at;

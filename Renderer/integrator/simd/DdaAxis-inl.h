@@ -21,14 +21,14 @@ struct DdaAxis {
     // Clamped below the last face, so that a ray in that face starts inside the last cell.
     const Float inside = fma(origin, axis.cellsPerVoxel, 0.5F * axis.cellsPerVoxel);
     result.start = max(min(inside, axis.insideCells), 0.0F);
-    const LaneMask moves = abs(result.speed) >= 1e-30F;
-    result.inverse = zeroUnless(moves, 1.0F / result.speed);
-    result.toMiddle = select(moves, (0.5F - result.start) * result.inverse,
+    const LaneMask isMoving = abs(result.speed) >= 1e-30F;
+    result.inverse = zeroUnless(isMoving, 1.0F / result.speed);
+    result.toMiddle = select(isMoving, (0.5F - result.start) * result.inverse,
                              std::numeric_limits<float>::infinity());
     return result;
   }
 
-  HWY_INLINE void where(LaneMask which, const DdaAxis& other) {
+  HWY_INLINE void setIf(LaneMask which, const DdaAxis& other) {
     start.setIf(which, other.start);
     speed.setIf(which, other.speed);
     inverse.setIf(which, other.inverse);

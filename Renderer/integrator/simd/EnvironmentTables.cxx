@@ -6,9 +6,9 @@ bool EnvironmentTables::isSupported(const EnvironmentSampler& sampler) {
   constexpr double maxTotal = 1e20, minTotal = 1e-20;
   constexpr int maxTexels = 1 << 14; // texels: positions in rows and columns stay precise in float
   const EnvironmentMap& map = sampler.light().map;
-  const double whole = sampler.integral();
+  const double total = sampler.integral();
   return sampler.isConstant() || (std::max(map.width, map.height) <= maxTexels &&
-                                  (whole == 0.0 || (whole > minTotal && whole < maxTotal)));
+                                  (total == 0.0 || (total > minTotal && total < maxTotal)));
 }
 
 EnvironmentTables::EnvironmentTables(const EnvironmentSampler& sampler, double mapPmf)

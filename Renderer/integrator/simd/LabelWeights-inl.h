@@ -1,7 +1,7 @@
 // Label weights of components at points in index space.
 
 /// Calls visit(lanes, component) once per distinct component among the lanes of `which`, with its
-/// lanes and its scalar index.
+/// lanes and its index as a scalar.
 template <typename Visit>
 HWY_INLINE void forEachComponent(LaneMask which, Int components, Visit&& visit) {
   const LaneArray<std::int32_t> each(components);
@@ -46,10 +46,10 @@ private:
     Float3 fractions; ///< distance from the voxel, 0 to 1
   };
   static constexpr std::int32_t edge = LabelWeights::brickEdge + 1; ///< voxels
-  /// Weights of a plane, four bytes in each: those from the lowest voxel on, and the four after
-  /// them; then the same in the next slice.
+  /// Weights of a plane, four bytes per element: bytes 0 to 3 and 4 to 7 from the lowest voxel on,
+  /// then the same in the next slice.
   using Bytes = std::array<Int, 4>;
-  /// The component that gets what the planes of a mixed brick leave of 255, and these bytes.
+  /// Component that gets the rest in a mixed brick, and its weights: 255 minus those of all planes.
   struct Remainder {
     Int components;
     Bytes bytes;
@@ -73,16 +73,16 @@ private:
   /// Visits the planes of mixed bricks and returns the remainder. `plane`: the brick's first.
   template <typename Visit>
   HWY_INLINE Remainder forEachPlane(LaneMask mixed, Int plane, Visit&& visit) const {
-    constexpr std::int32_t byte = 8, numbersAt = sizeof(LabelWeights::Plane) - sizeof(std::int32_t);
-    static_assert(offsetof(LabelWeights::Plane, component) == numbersAt + 1);
+    constexpr std::int32_t byte = 8, tail = sizeof(LabelWeights::Plane) - sizeof(std::int32_t);
+    static_assert(offsetof(LabelWeights::Plane, component) == tail + 1);
     const auto* const memory = reinterpret_cast<const std::uint8_t*>(m_weights.planes);
     Remainder rest{0, {-1, -1, -1, -1}};
     for (LaneMask left = mixed; left.any(); plane = plane + 1) {
       const Int start = zeroUnless(left, plane * std::int32_t{sizeof(LabelWeights::Plane)});
-      const Int numbers = loadInts(memory + numbersAt, Indices(start));
+      const Int numbers = loadInts(memory + tail, Indices(start));
       const Bytes bytes = loadBytes(memory, start + m_corner.voxel);
-      for (std::size_t i = 0; i < bytes.size(); ++i) // no weight's byte falls below 0
-        rest.bytes[i] = rest.bytes[i] - zeroUnless(left, bytes[i]);
+      for (std::size_t i = 0; i < bytes.size(); ++i)
+        rest.bytes[i] = rest.bytes[i] - zeroUnless(left, bytes[i]); // no borrow: sums are <= 255
       rest.components.setIf(left, shiftRight<2 * byte>(numbers) & 0xff);
       const Float fraction = zeroUnless(left, interpolate(bytes));
       if (const LaneMask some = fraction > 0.0F; some.any())

@@ -42,7 +42,7 @@ struct SimdLabelWeights {
 
   AffineRows toWeights; ///< from the volume's index space
   SimdAxes axes;
-  const std::int32_t* bricks; ///< Shares::bricks()
+  const std::int32_t* bricks; ///< LabelWeights::bricks()
   const LabelWeights::Plane* planes;
 };
 

@@ -10,9 +10,9 @@ struct LaneEmitterHit {
   Float pdf;
 };
 /// LightSet::evaluateEnvironment. selectTexel(map) returns a map's texel in `direction`.
-template <typename TexelOf>
+template <typename SelectTexel>
 HWY_INLINE LaneEmitterHit evaluateEnvironment(const SimdShading& shading, const Float3& direction,
-                                              TexelOf&& selectTexel) {
+                                              SelectTexel&& selectTexel) {
   LaneEmitterHit sum{evaluateSkies(shading.lights, direction), 0.0F};
   for (const EnvironmentTables& map : shading.maps) {
     const Float3 radiance = loadRadiance(map, selectTexel(map));

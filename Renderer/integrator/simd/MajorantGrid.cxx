@@ -42,31 +42,31 @@ struct PaddedGrid {
 /// For each inner cell the radius, in cells, of the empty cube around it; -1 for cells that are not
 /// empty. A chessboard distance transform in two sweeps (Rosenfeld and Pfaltz 1966). Cells
 /// outside the border do not count as empty.
-std::vector<std::int32_t> findEmptyRadii(const PaddedGrid& at,
+std::vector<std::int32_t> findEmptyRadii(const PaddedGrid& grid,
                                          const std::vector<float>& majorants) {
   constexpr std::int32_t unknown = 1000000;
-  std::vector<std::int32_t> cells(at.count(), 0);
-  at.forEachInner(
+  std::vector<std::int32_t> cells(grid.count(), 0);
+  grid.forEachInner(
       [&](std::size_t i, const Size3&) { cells[i] = majorants[i] > 0.0F ? -1 : unknown; });
   std::array<std::ptrdiff_t, 13> back; // offsets to neighbors visited earlier in the first sweep
   for (std::ptrdiff_t n = 0; n < 13; ++n)
     back[static_cast<std::size_t>(n)] =
-        n % 3 - 1 + at.size.x() * (n / 3 % 3 - 1 + at.size.y() * (n / 9 - 1));
+        n % 3 - 1 + grid.size.x() * (n / 3 % 3 - 1 + grid.size.y() * (n / 9 - 1));
   const auto relax = [&](std::int32_t* cell, std::ptrdiff_t side) {
     // A filled neighbor (-1) allows radius 0; an empty one of radius n allows n + 1.
     for (const std::ptrdiff_t step : back)
       if (*cell > 0)
         *cell = std::min(*cell, cell[side * step] + 1);
   };
-  at.forEachInner([&](std::size_t i, const Size3&) { relax(&cells[i], 1); });
-  at.forEachInner([&](std::size_t i, const Size3&) { relax(&cells[at.count() - 1 - i], -1); });
+  grid.forEachInner([&](std::size_t i, const Size3&) { relax(&cells[i], 1); });
+  grid.forEachInner([&](std::size_t i, const Size3&) { relax(&cells[grid.count() - 1 - i], -1); });
   return cells;
 }
 
 /// Replaces each inner cell by the maximum of the 27 cells centered there.
-void dilate(const PaddedGrid& at, std::vector<float>& cells, std::vector<float>& scratch) {
-  for (const std::size_t stride : at.strides()) {
-    at.forEachInParallel([&](std::size_t i, const Size3&) {
+void dilate(const PaddedGrid& grid, std::vector<float>& cells, std::vector<float>& scratch) {
+  for (const std::size_t stride : grid.strides()) {
+    grid.forEachInParallel([&](std::size_t i, const Size3&) {
       scratch[i] = std::max({cells[i - stride], cells[i], cells[i + stride]});
     });
     cells.swap(scratch);
@@ -82,18 +82,18 @@ struct SkipRadii {
 /// Summed-volume table: sums over boxes of cells in constant time.
 class BoxSums {
 public:
-  BoxSums(const PaddedGrid& at, const std::vector<float>& cells)
-      : m_at(at), m_sums(cells.begin(), cells.end()) {
-    for (const std::size_t stride : at.strides())
-      at.forEachInner([&](std::size_t i, const Size3&) { m_sums[i] += m_sums[i - stride]; });
+  BoxSums(const PaddedGrid& grid, const std::vector<float>& cells)
+      : m_grid(grid), m_sums(cells.begin(), cells.end()) {
+    for (const std::size_t stride : grid.strides())
+      grid.forEachInner([&](std::size_t i, const Size3&) { m_sums[i] += m_sums[i - stride]; });
   }
 
   /// Mean over the inner cells within `radius` cells of a cell.
   float mean(const Size3& cell, std::int64_t radius) const {
     const Size3 low = (cell.array() - radius).max(1);
-    const Size3 high = (cell.array() + radius).min(m_at.size.array() - 2);
+    const Size3 high = (cell.array() + radius).min(m_grid.size.array() - 2);
     const auto upTo = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-      return m_sums[m_at.index({x, y, z})];
+      return m_sums[m_grid.index({x, y, z})];
     };
     const auto slice = [&](std::int64_t z) {
       return upTo(high.x(), high.y(), z) - upTo(low.x() - 1, high.y(), z) -
@@ -104,7 +104,7 @@ public:
   }
 
 private:
-  const PaddedGrid& m_at;
+  const PaddedGrid& m_grid;
   std::vector<double> m_sums;
 };
 
@@ -112,27 +112,27 @@ private:
 /// stepCost / (edge (0.7 + r)) for steps, plus bound_r - mean majorant for null collisions. 0.7
 /// edges is the mean chord of a cell; stepCost is the measured cost of a step. The choice changes
 /// cost alone, never an expected value.
-SkipRadii chooseRadii(const PaddedGrid& at, const std::vector<float>& majorants,
+SkipRadii chooseRadii(const PaddedGrid& grid, const std::vector<float>& majorants,
                       const std::vector<bool>& cut, double edge) {
   constexpr double stepCost = 0.15;
-  const BoxSums sums(at, majorants);
-  SkipRadii best{majorants, std::vector<std::uint8_t>(at.count(), 0)};
-  std::vector<float> minCosts(at.count(), static_cast<float>(stepCost / (edge * 0.7)));
+  const BoxSums sums(grid, majorants);
+  SkipRadii best{majorants, std::vector<std::uint8_t>(grid.count(), 0)};
+  std::vector<float> minCosts(grid.count(), static_cast<float>(stepCost / (edge * 0.7)));
   std::vector<float> bounds(majorants);
-  std::vector<float> scratch(at.count(), 0.0F);
-  for (std::size_t i = 0; i < at.count(); ++i)
+  std::vector<float> scratch(grid.count(), 0.0F);
+  for (std::size_t i = 0; i < grid.count(); ++i)
     if (cut[i]) // cut cells are never part of another cell's radius
       bounds[i] = std::numeric_limits<float>::infinity();
   // A cell that gains from neither r + 1 nor r + 2 is assumed not to gain from r + 3.
-  std::atomic<bool> some = true;
-  for (std::uint32_t radius = 1; some && radius <= SimdMajorants::maxRadius; ++radius) {
-    some = false;
-    dilate(at, bounds, scratch);
+  std::atomic<bool> canGain = true;
+  for (std::uint32_t radius = 1; canGain && radius <= SimdMajorants::maxRadius; ++radius) {
+    canGain = false;
+    dilate(grid, bounds, scratch);
     const auto step = static_cast<float>(stepCost / (edge * (0.7 + radius)));
-    at.forEachInParallel([&](std::size_t i, const Size3& cell) {
+    grid.forEachInParallel([&](std::size_t i, const Size3& cell) {
       if (majorants[i] == 0.0F || best.radii[i] + 2U < radius)
         return;
-      some.store(true, std::memory_order_relaxed);
+      canGain.store(true, std::memory_order_relaxed);
       const float cost = bounds[i] - sums.mean(cell, radius) + step;
       if (cost < minCosts[i]) {
         minCosts[i] = cost;
@@ -150,8 +150,8 @@ constexpr std::int64_t maxMergedVoxels = 16;
 
 /// Code of a bound >= majorant > 0: the radius's bits are rounded up.
 std::uint32_t encodeMajorant(float majorant) {
-  constexpr auto below = static_cast<std::uint32_t>(SimdMajorants::radiusBits);
-  return (std::bit_cast<std::uint32_t>(majorant) + below) & ~below;
+  constexpr auto mask = static_cast<std::uint32_t>(SimdMajorants::radiusBits);
+  return (std::bit_cast<std::uint32_t>(majorant) + mask) & ~mask;
 }
 
 } // namespace
@@ -159,25 +159,25 @@ std::uint32_t encodeMajorant(float majorant) {
 SimdMajorants::SimdMajorants(const MajorantGrid& majorants)
     : merged(majorants.edge().prod() <= maxMergedVoxels ? 2 : 1),
       count((majorants.cellCount().array() + merged - 1) / merged) {
-  const PaddedGrid at{count.array() + 2};
-  std::vector<float> bound(at.count(), 0.0F);
-  std::vector<bool> cut(at.count(), false);
+  const PaddedGrid grid{count.array() + 2};
+  std::vector<float> bound(grid.count(), 0.0F);
+  std::vector<bool> cut(grid.count(), false);
   const Size3& fine = majorants.cellCount();
   std::int64_t next = 0;
   for (std::int64_t z = 0; z < fine.z(); ++z)
     for (std::int64_t y = 0; y < fine.y(); ++y)
       for (std::int64_t x = 0; x < fine.x(); ++x) {
         const MajorantGrid::Cell& cell = majorants.cell(next++);
-        const std::size_t i = at.index({x / merged + 1, y / merged + 1, z / merged + 1});
+        const std::size_t i = grid.index({x / merged + 1, y / merged + 1, z / merged + 1});
         bound[i] = std::max(bound[i], cell.majorant);
         cut[i] = cut[i] || cell.isCut;
       }
   const double edge = static_cast<double>(merged) *
                       std::cbrt(std::abs(1.0 / majorants.worldToCell().linear().determinant()));
-  const std::vector<std::int32_t> emptyRadii = findEmptyRadii(at, bound);
-  const SkipRadii skip = chooseRadii(at, bound, cut, edge);
-  codes.assign(at.count(), 0);
-  for (std::size_t i = 0; i < at.count(); ++i) {
+  const std::vector<std::int32_t> emptyRadii = findEmptyRadii(grid, bound);
+  const SkipRadii skip = chooseRadii(grid, bound, cut, edge);
+  codes.assign(grid.count(), 0);
+  for (std::size_t i = 0; i < grid.count(); ++i) {
     if (bound[i] > 0.0F)
       codes[i] = static_cast<std::int32_t>((cut[i] ? SimdMajorants::cutBit : 0U) |
                                            encodeMajorant(skip.bound[i]) | skip.radii[i]);

@@ -2,9 +2,9 @@
 // Majorants in SIMD form: 32 bits per cell. Besides its majorant a cell stores a skip radius: the
 // number of cells on every side for which the majorant holds, so that a ray leaves them all in one
 // step. Empty cells have the largest possible radius; others trade a looser majorant for a longer
-// step: dense regions are traversed cell by cell, thin ones in blocks. Small cells are merged,
-// eight to one. Bounds overlap (MajorantGrid::margin), so a cut cell lies between a removed and an
-// untouched one, and a merged cell that the surface passes is cut.
+// step: dense regions are traversed cell by cell, sparse ones in blocks. Small cells are merged,
+// eight to one. Bounds overlap (MajorantGrid::margin), so that between a removed and an uncut cell
+// there is always a cut one. A merged cell that the surface crosses is therefore cut.
 
 #include "base/LargePages.h"
 #include "integrator/scalar/MajorantGrid.h"

@@ -145,18 +145,18 @@ private:
   /// Intersects with a box. A ray that lies in a face counts as inside.
   HWY_INLINE void clip(const Float3& lower, const Float3& upper, const Float3& origin,
                        const Float3& direction) {
-    const auto along = [&](Float low, Float high, Float o, Float d) {
+    const auto clipAxis = [&](Float low, Float high, Float o, Float d) {
       constexpr float infinite = std::numeric_limits<float>::infinity();
-      const LaneMask still = d == 0.0F, back = d < 0.0F;
+      const LaneMask isParallel = d == 0.0F, isBackward = d < 0.0F;
       const LaneMask inside = (low <= o) & (o <= high);
-      const Float near = (select(back, high, low) - o) / d;
-      const Float far = (select(back, low, high) - o) / d;
-      begin = max(begin, select(still, select(inside, -infinite, infinite), near));
-      end = min(end, select(still, infinite, far));
+      const Float near = (select(isBackward, high, low) - o) / d;
+      const Float far = (select(isBackward, low, high) - o) / d;
+      begin = max(begin, select(isParallel, select(inside, -infinite, infinite), near));
+      end = min(end, select(isParallel, infinite, far));
     };
-    along(lower.x, upper.x, origin.x, direction.x);
-    along(lower.y, upper.y, origin.y, direction.y);
-    along(lower.z, upper.z, origin.z, direction.z);
+    clipAxis(lower.x, upper.x, origin.x, direction.x);
+    clipAxis(lower.y, upper.y, origin.y, direction.y);
+    clipAxis(lower.z, upper.z, origin.z, direction.z);
   }
 };
 

@@ -70,11 +70,11 @@ void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
   medium.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
   medium.cutSlope = edge.softness > 0.0 ? narrow(cutShading / edge.softness) : 0.0F;
   const Camera& camera = plane ? plane->camera : depth->camera;
-  const Vec3& eye = camera.pose().position;
+  const Vec3& from = camera.pose().position;
   medium.perspective = camera.pose().projection == Projection::perspective;
   medium.targetDepth = narrow(camera.targetDepth());
-  medium.toView = {makeRow(grid, camera.right(), eye, 0.0), makeRow(grid, camera.up(), eye, 0.0),
-                   makeRow(grid, camera.forward(), eye, -camera.targetDepth())};
+  medium.toView = {makeRow(grid, camera.right(), from, 0.0), makeRow(grid, camera.up(), from, 0.0),
+                   makeRow(grid, camera.forward(), from, -camera.targetDepth())};
   medium.fromView = affineRows(Affine(Mat3(camera.right(), camera.up(), camera.forward())));
   if (plane) {
     medium.clipKind = SimdMedium::ClipKind::plane;

@@ -55,16 +55,16 @@ public:
 
 private:
   void step(std::size_t i) {
-    const LaneMask there = LaneMask::first(m_paths.rays.size - i);
+    const LaneMask isValid = LaneMask::first(m_paths.rays.size - i);
     const Float distance = load(&m_paths.rays.result[i]);
     const Int bounces = load(&m_paths.bounces[i]);
     const LaneMask first = bounces == 0;
     const Float3 origin = load3(m_paths.rays.origin, i);
-    addEmitted(i, there.without(first), origin, distance);
+    addEmitted(i, isValid.without(first), origin, distance);
 
     const LaneMask escaped = distance == std::numeric_limits<float>::infinity();
     const LaneMask canScatter = bounces < m_shading.bounces;
-    const LaneMask active = (there & canScatter).without(escaped);
+    const LaneMask active = (isValid & canScatter).without(escaped);
     m_collisions += active.count();
     LaneMask alive = active;
     if (active.any()) {
@@ -72,7 +72,7 @@ private:
       store(bounces + one, &m_paths.bounces[i]);
       alive = collide(i, active, first & active, origin, zeroUnless(active, distance));
     }
-    m_paths.ended[i / 64] |= there.without(alive).bits() << i % 64;
+    m_paths.ended[i / 64] |= isValid.without(alive).bits() << i % 64;
   }
 
   /// Adds the light emitted along scattered rays, up to their collision or at infinity.
@@ -90,26 +90,26 @@ private:
   /// Scatters the lanes of `active`; returns those whose path continues.
   LaneMask collide(std::size_t i, LaneMask active, LaneMask first, const Float3& origin,
                    Float distance) {
-    PathRandom draws{load(&m_paths.key[i]), load(&m_paths.counter[i])};
+    PathRandom random{load(&m_paths.key[i]), load(&m_paths.counter[i])};
     const Float3 index = origin + distance * load3(m_paths.rays.direction, i);
-    const Collisions at = lookUpMedium(i, active, first, index, draws);
+    const Collisions at = lookUpMedium(i, active, first, index, random);
     if (first.any())
       recordFirstHit(i, at, distance);
-    return m_medium.mixture ? scatter(i, at, draws, gatherBsdfs(m_shading, at.component))
-                            : scatter(i, at, draws, m_shading.bsdfs[0]);
+    return m_medium.mixture ? scatter(i, at, random, gatherBsdfs(m_shading, at.component))
+                            : scatter(i, at, random, m_shading.bsdfs[0]);
   }
 
   /// Scatters by the given BSDF parameters; returns the lanes whose path continues.
   template <typename Number>
-  HWY_INLINE LaneMask scatter(std::size_t i, const Collisions& at, PathRandom& draws,
-                              const BsdfParameters<Number>& law) {
-    const PhaseLobe<Number> phase(law.g, at.incoming, at.albedo);
+  HWY_INLINE LaneMask scatter(std::size_t i, const Collisions& at, PathRandom& random,
+                              const BsdfParameters<Number>& bsdf) {
+    const PhaseLobe<Number> phase(bsdf.g, at.incoming, at.albedo);
     const bool surfaces = at.surface.any();
     const auto surface = [&] {
-      return SurfaceLobes<Number>(law, at.incoming, at.gradient, at.albedo);
+      return SurfaceLobes<Number>(bsdf, at.incoming, at.gradient, at.albedo);
     };
     if (m_shading.hasSampledLights)
-      sampleLights(i, at, draws, [&](const Float3& toward) {
+      sampleLights(i, at, random, [&](const Float3& toward) {
         const ScatterEval s = phase.evaluate(toward);
         if (!surfaces)
           return s;
@@ -118,9 +118,9 @@ private:
                            select(at.surface, o.pdf, s.pdf)};
       });
 
-    const Float choice = m_shading.hybrid ? draws.uniform() : 0.0F; // even if no lane needs it
-    const Float u = selectGiven(at.first, m_paths.uDirection[0], i, draws);
-    const Float v = selectGiven(at.first, m_paths.uDirection[1], i, draws);
+    const Float choice = m_shading.hybrid ? random.uniform() : 0.0F; // even if no lane needs it
+    const Float u = selectGiven(at.first, m_paths.uDirection[0], i, random);
+    const Float v = selectGiven(at.first, m_paths.uDirection[1], i, random);
     ScatterSamples sampled = phase.sample(u, v);
     if (surfaces) {
       const ScatterSamples other = surface().sample(choice, u, v);
@@ -128,11 +128,11 @@ private:
                  select(at.surface, other.weight, sampled.weight),
                  select(at.surface, other.pdf, sampled.pdf)};
     }
-    return continuePath(i, at, sampled, draws);
+    return continuePath(i, at, sampled, random);
   }
 
   HWY_INLINE Collisions lookUpMedium(std::size_t i, LaneMask active, LaneMask first,
-                                     const Float3& index, PathRandom& draws) {
+                                     const Float3& index, PathRandom& random) {
     Collisions at{active,
                   first,
                   index,
@@ -140,7 +140,7 @@ private:
                   load3(m_paths.direction, i),
                   load3(m_paths.throughput, i)};
     if (m_medium.mixture) {
-      at.component = sampleComponents(m_medium, active, index, at.scalar, draws.uniform());
+      at.component = sampleComponents(m_medium, active, index, at.scalar, random.uniform());
       at.albedo = evalComponentAlbedo(m_shading, active, at.component, at.scalar);
     } else {
       at.albedo = evalMediumAlbedo(m_shading, active, index, at.scalar);
@@ -155,15 +155,15 @@ private:
       const Float slope = sqrt(dot(at.gradient, at.gradient));
       const Float chance =
           oneMinusExp(evalOwnExtinction(at)) * oneMinusExp(m_shading.surfaceRate * slope);
-      at.surface = active & (selectGiven(first, m_paths.uChoices[0], i, draws) < chance);
+      at.surface = active & (selectGiven(first, m_paths.uChoices[0], i, random) < chance);
     }
     return at;
   }
 
   /// One random number per path: given at its first scattering, generated at later ones.
   static HWY_INLINE Float selectGiven(LaneMask first, const SoaArray<float>& given, std::size_t i,
-                                      PathRandom& draws) {
-    return select(first, load(&given[i]), draws.uniform());
+                                      PathRandom& random) {
+    return select(first, load(&given[i]), random.uniform());
   }
 
   /// Lanes whose component the clip can remove.
@@ -203,26 +203,26 @@ private:
   }
 
   /// PathSteps::sampleLight: appends a shadow ray for each lane whose light can contribute.
-  template <typename Toward>
-  void sampleLights(std::size_t i, const Collisions& at, PathRandom& draws, Toward&& toward) {
-    const Float choice = selectGiven(at.first, m_paths.uChoices[1], i, draws);
-    const UInt u = draws.nextBits();
-    const UInt v = draws.nextBits();
+  template <typename Evaluate>
+  void sampleLights(std::size_t i, const Collisions& at, PathRandom& random, Evaluate&& evaluate) {
+    const Float choice = selectGiven(at.first, m_paths.uChoices[1], i, random);
+    const UInt u = random.nextBits();
+    const UInt v = random.nextBits();
     const LightSamples light =
         sampleLightSet(m_shading, at.active, mapPoint(m_shading.toLocal, at.index), choice, u, v);
-    const ScatterEval scattered = toward(light.direction);
+    const ScatterEval scattered = evaluate(light.direction);
     const Float pdf = light.pdf + select(light.isDelta, 0.0F, scattered.pdf);
     const Float3 radiance = (1.0F / pdf) * (at.throughput * scattered.factor * light.radiance);
-    const LaneMask arrives = at.active & (maxComponent(radiance) > 0.0F);
-    const std::size_t count = arrives.count();
-    const UInt depth = draws.nextBits();
-    const Float acceptance = draws.uniform();
+    const LaneMask contributes = at.active & (maxComponent(radiance) > 0.0F);
+    const std::size_t count = contributes.count();
+    const UInt depth = random.nextBits();
+    const Float acceptance = random.uniform();
     if (count == 0)
       return;
     const Float3 direction = mapDirection(m_shading.localToIndex, light.direction);
     const Float length = min(light.distance, lengthInDomain(m_medium, at.index, direction));
     const std::size_t to = m_shadowRays.rays.size;
-    const Shuffle pack = Shuffle::compress(arrives);
+    const Shuffle pack = Shuffle::compress(contributes);
     const auto put = [&](auto x, auto& column) { store(pack(x), &column[to]); };
     store3(pack(at.index), m_shadowRays.rays.origin, to);
     store3(pack(direction), m_shadowRays.rays.direction, to);
@@ -236,12 +236,12 @@ private:
 
   /// Sets the paths' throughput and next rays. Returns the lanes that survive Russian roulette.
   HWY_INLINE LaneMask continuePath(std::size_t i, const Collisions& at,
-                                   const ScatterSamples& sampled, PathRandom& draws) {
+                                   const ScatterSamples& sampled, PathRandom& random) {
     constexpr auto threshold = static_cast<float>(rouletteThreshold);
     Float3 throughput = at.throughput * sampled.weight;
-    const Float size = sqrt((1.0F / 3.0F) * dot(throughput, throughput));
-    const Float chance = min(size * (1.0F / threshold), 1.0F);
-    const LaneMask survives = draws.uniform() <= chance;
+    const Float rms = sqrt((1.0F / 3.0F) * dot(throughput, throughput));
+    const Float chance = min(rms * (1.0F / threshold), 1.0F);
+    const LaneMask survives = random.uniform() <= chance;
     throughput = zeroUnless(survives, (1.0F / chance) * throughput);
     store3(throughput, m_paths.throughput, i);
     store(sampled.pdf, &m_paths.scatterPdf[i]);
@@ -250,9 +250,9 @@ private:
     const Float3 direction = mapDirection(m_shading.localToIndex, sampled.outgoing);
     store3(direction, m_paths.rays.direction, i);
     store(lengthInDomain(m_medium, at.index, direction), &m_paths.rays.length[i]);
-    store(draws.nextBits(), &m_paths.rays.depthBits[i]);
-    store(draws.uniform(), &m_paths.rays.acceptance[i]);
-    store(draws.counter, &m_paths.counter[i]);
+    store(random.nextBits(), &m_paths.rays.depthBits[i]);
+    store(random.uniform(), &m_paths.rays.acceptance[i]);
+    store(random.counter, &m_paths.counter[i]);
     return at.active & (maxComponent(throughput) > 0.0F);
   }
 

@@ -16,18 +16,18 @@ void appendLines(std::vector<SimdTable::Line>& lines, const ScalarFunction& func
   const double rounding =
       2.5e-4 * width + 0x1p-22 * std::max(std::abs(bins.begin), std::abs(bins.end));
   const bool isFine = rounding < 0.1 * width || knots.size() == 1;
-  const auto before = [&](double position) {
+  const auto lower = [&](double position) {
     return std::ranges::lower_bound(knots, position, {}, &ScalarFunction::Knot::position);
   };
-  const auto behind = [&](double position) {
+  const auto upper = [&](double position) {
     return std::ranges::upper_bound(knots, position, {}, &ScalarFunction::Knot::position);
   };
   for (std::size_t bin = 0; bin < lineCount; ++bin) {
     const double low = bins.begin + width * static_cast<double>(bin), high = low + width;
     // A bin may have one knot on each edge, where the function bends but does not jump.
-    const auto inside = behind(low + rounding);
-    const bool isLine = isFine && inside - before(low - rounding) <= 1 &&
-                        before(high - rounding) <= inside && behind(high + rounding) - inside <= 1;
+    const auto inside = upper(low + rounding);
+    const bool isLine = isFine && inside - lower(low - rounding) <= 1 &&
+                        lower(high - rounding) <= inside && upper(high + rounding) - inside <= 1;
     const double value = function(low + 0.25 * width)[0], later = function(low + 0.75 * width)[0];
     const double rise = 2.0 * (later - value);
     lines.push_back({narrow(value - 0.25 * rise),

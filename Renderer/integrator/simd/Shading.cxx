@@ -18,27 +18,27 @@ bool SimdShading::isSupported(const Grid& grid, const TransferFunction& transfer
   constexpr double maxRadiance = 1e20;
   constexpr double minRadius = 1e-3; // mm; minimum radius of spheres: sine^2 must not underflow
   constexpr double maxRadius = 1e6;  // mm; keeps distance^2 - radius^2 precise in float
-  const auto isNear = [&](const auto& light, double most) {
-    return (light.center - grid.worldCenter()).norm() < most &&
+  const auto isNear = [&](const auto& light, double limit) {
+    return (light.center - grid.worldCenter()).norm() < limit &&
            light.radiance.maxCoeff() < maxRadiance;
   };
-  const auto areaFits = [&](const auto& light) {
+  const auto isAreaSupported = [&](const auto& light) {
     return isNear(light, maxDistance) &&
            std::max(light.right.norm(), light.up.norm()) < maxDistance;
   };
-  const auto sphereFits = [&](const auto& light) {
+  const auto isSphereSupported = [&](const auto& light) {
     const double radius = std::sqrt(light.radius2);
     return isNear(light, maxRadius) && radius > minRadius && radius < maxRadius;
   };
-  const auto mapFits = [](const PlacedEnvironment& environment) {
+  const auto isMapSupported = [](const PlacedEnvironment& environment) {
     return EnvironmentTables::isSupported(environment.sampler);
   };
   return hasWideLobes(transfer) &&
          (!mixture ||
           std::ranges::all_of(mixture->components, hasWideLobes, &Component::transfer)) &&
-         std::ranges::all_of(lights.tables().areas, areaFits) &&
-         std::ranges::all_of(lights.tables().spheres, sphereFits) &&
-         std::ranges::all_of(lights.environments(), mapFits);
+         std::ranges::all_of(lights.tables().areas, isAreaSupported) &&
+         std::ranges::all_of(lights.tables().spheres, isSphereSupported) &&
+         std::ranges::all_of(lights.environments(), isMapSupported);
 }
 
 SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, const LightSet& set,

@@ -1,5 +1,5 @@
 #pragma once
-// What SIMD shading reads beside SimdMedium, in float: scattering, albedo, lights.
+// Inputs of SIMD shading besides SimdMedium, in float: scattering, albedo, lights.
 
 #include "base/Narrow.h"
 #include "integrator/simd/EnvironmentTables.h"

@@ -74,24 +74,24 @@ private:
     std::size_t count = idle.count();
     for (; count > m_queue.left(); --count)
       set &= ~std::bit_floor(set);
-    const LaneMask fresh = LaneMask::fromBits(set);
+    const LaneMask added = LaneMask::fromBits(set);
     const std::size_t first = m_queue.next;
     m_queue.next += count;
 
-    const Shuffle deal = Shuffle::expand(fresh);
-    const auto dealt = [&](const auto& column) { return deal(load(&column[first])); };
+    const Shuffle expand = Shuffle::expand(added);
+    const auto loadNext = [&](const auto& column) { return expand(load(&column[first])); };
     for (std::size_t axis = 0; axis < 3; ++axis)
-      m_axes[axis].where(fresh, DdaAxis::fromRay(m_medium.axes[axis], dealt(m_rays.origin[axis]),
-                                                 dealt(m_rays.direction[axis])));
-    m_t.setIf(fresh, 0.0F);
-    m_end.setIf(fresh, dealt(m_rays.length));
-    m_ratio.setIf(fresh, 1.0F);
-    const UInt depth = dealt(m_rays.depthBits);
-    m_depth.setIf(fresh, toExponential(depth));
-    m_counter.setIf(fresh, depth);
-    m_acceptance.setIf(fresh, dealt(m_rays.acceptance));
-    m_ray.setIf(fresh, deal.indices() + static_cast<std::int32_t>(first));
-    m_busy = m_busy | fresh;
+      m_axes[axis].setIf(added, DdaAxis::fromRay(m_medium.axes[axis], loadNext(m_rays.origin[axis]),
+                                                 loadNext(m_rays.direction[axis])));
+    m_t.setIf(added, 0.0F);
+    m_end.setIf(added, loadNext(m_rays.length));
+    m_ratio.setIf(added, 1.0F);
+    const UInt depth = loadNext(m_rays.depthBits);
+    m_depth.setIf(added, toExponential(depth));
+    m_counter.setIf(added, depth);
+    m_acceptance.setIf(added, loadNext(m_rays.acceptance));
+    m_ray.setIf(added, expand.indices() + static_cast<std::int32_t>(first));
+    m_busy = m_busy | added;
   }
 
   /// Moves each busy lane that waits for no look-up: to a tentative collision within its cell and
@@ -148,9 +148,9 @@ private:
     m_counter.setIf(hit, counter);
     if constexpr (wantRatio) {
       constexpr float rouletteThreshold = 0.4F;
-      const Float thinned = m_ratio * clampZero(1.0F - extinction / m_majorant);
-      const Float survived = zeroUnless(u * rouletteThreshold < thinned, rouletteThreshold);
-      m_ratio.setIf(hit, select(thinned < rouletteThreshold, survived, thinned));
+      const Float ratio = m_ratio * clampZero(1.0F - extinction / m_majorant);
+      const Float survived = zeroUnless(u * rouletteThreshold < ratio, rouletteThreshold);
+      m_ratio.setIf(hit, select(ratio < rouletteThreshold, survived, ratio));
       m_busy = m_busy.without(hit & (m_ratio <= 0.0F));
     } else {
       const LaneMask real = hit & (u * m_majorant < extinction);
@@ -239,8 +239,8 @@ void trackBatch(const SimdMedium& medium, RayBatch& rays, const StopFlag& stop,
 }
 
 /// Turns a bool into a compile-time constant for std::visit.
-std::variant<std::false_type, std::true_type> toConstant(bool is) {
-  if (is)
+std::variant<std::false_type, std::true_type> toConstant(bool value) {
+  if (value)
     return std::true_type();
   return std::false_type();
 }

@@ -1,8 +1,8 @@
 #pragma once
 // The lights of a scene: next-event estimation samples; and, for directions sampled by scattering,
 // the emitted radiance and the density of sample() (for multiple importance sampling).
-// Constant environments and skies are never sampled: scattered rays reach them without a second
-// ray. Area lights and spheres only emit: they block no light, and camera rays do not see them.
+// Constant environments and skies are never sampled: scattered rays reach them without shadow rays.
+// Area lights and spheres only emit: they block no light, and camera rays do not see them.
 
 #include "base/Random.h"
 #include "base/ScalarMath.h"

@@ -36,7 +36,7 @@ struct LightTables {
   struct Sky {
     Point up;
     Color middle;
-    Color toTop, toBottom; ///< differences of the radiance there from that in the middle
+    Color toTop, toBottom; ///< radiance there minus `middle`
   };
 
   std::vector<Area> areas;

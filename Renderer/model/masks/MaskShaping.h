@@ -1,9 +1,9 @@
 #pragma once
-// Margins, interpolation between slices, and smoothing of focus masks. Masks are smoothed by shape
-// based interpolation first, then by a Gaussian: label maps are binary samples, and the Gaussian
-// alone would leave a staircase wherever a surface shifts by more than about two sigmas per slice.
-// Stripes that remain in an image come from the volume, which is trilinear between slices, in
-// voxels that two tissues share. They vanish under a constant transfer function.
+// Margins, interpolation between slices, and smoothing of focus masks. Masks are smoothed by
+// shape-based interpolation first, then by a Gaussian: label maps are binary samples, and the
+// Gaussian alone would leave a staircase wherever a surface shifts by more than about two sigmas
+// per slice. Stripes that remain in an image come from the volume, which is trilinear between
+// slices, where a voxel contains two tissues. They vanish under a constant transfer function.
 
 #include "model/volume/Mask.h"
 
@@ -32,8 +32,8 @@ Mask applyMargin(Mask mask, double margin, const Grid& volume);
 Mask uniteMasks(std::vector<Mask> masks);
 
 /// Resamples a mask to nearly cubic voxels: divides slices at least twice as thick as their pixels
-/// are wide. The original slices are kept. Between two of them a voxel is inside if the linearly
-/// interpolated signed distance to their outlines is < 0 (Raya and Udupa 1990: shape based
+/// are wide. The original slices remain. Between two of them a voxel is inside if the linearly
+/// interpolated signed distance to their outlines is < 0 (Raya and Udupa 1990: shape-based
 /// interpolation). A surface oblique to the slices would otherwise form stairs, each as wide as the
 /// outline's shift per slice; only a Gaussian of that width would smooth them.
 Mask interpolateSlices(Mask mask);

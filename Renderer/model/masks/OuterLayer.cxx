@@ -22,7 +22,7 @@ Grid subsampleGrid(const Grid& fine, const Size3& stride) {
 }
 
 /// Axis of the grid closest to the patient's S axis.
-int longAxis(const Grid& grid) {
+int findLongAxis(const Grid& grid) {
   const Vec3 up = grid.indexToWorld.linear().normalizedColumns().row(2).cwiseAbs();
   return static_cast<int>(std::ranges::max_element(up.data(), up.data() + 3) - up.data());
 }
@@ -93,7 +93,7 @@ Mask findOutsideAir(const Volume& volume, double airBelow, const Size3& stride) 
     });
   };
   std::visit(classify, volume.voxels);
-  FloodFill(size, mask.voxels).fillFromSides(longAxis(mask.grid));
+  FloodFill(size, mask.voxels).fillFromSides(findLongAxis(mask.grid));
   for (std::uint8_t& voxel : mask.voxels) {
     voxel = voxel == FloodFill::outside ? mask.maxValue : 0;
     mask.count += voxel > 0;
@@ -163,9 +163,9 @@ Mask findOuterLayer(const Volume& volume, double airBelow, double depth) {
                           .cwiseMin(layer.grid.size.cast<double>());
   layer.voxels = blurMask(layer, Size3::Zero(), layer.grid.size, sigmas);
   std::array<std::uint8_t, 256> remapped; // indicator by blurred value
-  for (std::size_t left = 0; left < remapped.size(); ++left) {
-    const double indicator = std::clamp((static_cast<double>(left) / 255.0 - 0.05) / 0.1, 0.0, 1.0);
-    remapped[left] = static_cast<std::uint8_t>(std::lround(indicator * layer.maxValue));
+  for (std::size_t i = 0; i < remapped.size(); ++i) {
+    const double indicator = std::clamp((static_cast<double>(i) / 255.0 - 0.05) / 0.1, 0.0, 1.0);
+    remapped[i] = static_cast<std::uint8_t>(std::lround(indicator * layer.maxValue));
   }
   for (std::uint8_t& voxel : layer.voxels)
     voxel = remapped[voxel];
@@ -188,10 +188,10 @@ Mask resampleMask(const Mask& layer, const Grid& labels, const Grid& volume) {
   mask.voxels.resize(static_cast<std::size_t>(size.prod()));
   const MaskResampler resampler(layer, layer.grid.worldToIndex * indexToWorld);
   constexpr std::int64_t edge = 8;
-  tbb::parallel_for(std::int64_t{0}, (size.z() + edge - 1) / edge, [&](std::int64_t layers) {
+  tbb::parallel_for(std::int64_t{0}, (size.z() + edge - 1) / edge, [&](std::int64_t slab) {
     for (std::int64_t y = 0; y < size.y(); y += edge)
       for (std::int64_t x = 0; x < size.x(); x += edge) {
-        const Size3 begin(x, y, edge * layers);
+        const Size3 begin(x, y, edge * slab);
         resampler.writeBlock(begin, (begin.array() + edge).min(size.array()), mask);
       }
   });

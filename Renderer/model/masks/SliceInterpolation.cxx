@@ -129,7 +129,7 @@ private:
 
 /// A position between two slices.
 struct SlicePair {
-  const float *before, *after; ///< their distances
+  const float *before, *after; ///< signed distances in both slices
   float fraction;              ///< of the distance from one to the other, 0 to 1
 
   bool isInside(std::int64_t pixel) const {

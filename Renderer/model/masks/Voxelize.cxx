@@ -16,16 +16,16 @@ bool isBefore(const Vec3& a, const Vec3& b) {
   return std::tie(a.y(), a.z()) < std::tie(b.y(), b.z());
 }
 
-/// Twice the signed area of the triangle (a, b, row) in the plane of y and z. edgeArea(b, a) is
-/// -edgeArea(a, b), bit for bit.
-double edgeArea(const Vec3& a, const Vec3& b, double y, double z) {
+/// Twice the signed area of the triangle (a, b, row) in the plane of y and z. computeEdgeArea(b, a)
+/// is -computeEdgeArea(a, b), bit for bit.
+double computeEdgeArea(const Vec3& a, const Vec3& b, double y, double z) {
   if (isBefore(b, a))
-    return -edgeArea(b, a, y, z);
+    return -computeEdgeArea(b, a, y, z);
   return (b.y() - a.y()) * (z - a.z()) - (b.z() - a.z()) * (y - a.y());
 }
 
 /// Side of the edge on which the perturbed row lies: 1 or -1; 0 if the edge is a single point.
-int edgeSide(const Vec3& a, const Vec3& b, double area) {
+int findEdgeSide(const Vec3& a, const Vec3& b, double area) {
   const auto sign = [](double x) { return (x > 0.0) - (x < 0.0); };
   if (area != 0.0)
     return sign(area);
@@ -33,7 +33,7 @@ int edgeSide(const Vec3& a, const Vec3& b, double area) {
 }
 
 /// First and last integer in [least, greatest] and in [0, size - 1]; first > last: none.
-std::pair<std::int64_t, std::int64_t> integerRange(double least, double greatest,
+std::pair<std::int64_t, std::int64_t> findIntegers(double least, double greatest,
                                                    std::int64_t size) {
   const auto last = static_cast<double>(size - 1);
   return {static_cast<std::int64_t>(std::clamp(std::ceil(least), 0.0, last + 1.0)),
@@ -47,9 +47,9 @@ public:
   /// Adds a triangle's intersections with rows. Returns false if maxWork is exceeded.
   bool add(const Vec3& a, const Vec3& b, const Vec3& c) {
     const auto [y0, y1] =
-        integerRange(std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()}), m_size.y());
+        findIntegers(std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()}), m_size.y());
     const auto [z0, z1] =
-        integerRange(std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()}), m_size.z());
+        findIntegers(std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()}), m_size.z());
     if (y1 < y0 || z1 < z0)
       return true;
     constexpr std::int64_t maxWork = 1'000'000'000;
@@ -67,10 +67,10 @@ public:
 private:
   void addRow(const Vec3& a, const Vec3& b, const Vec3& c, std::int64_t row, std::int64_t slice) {
     const auto y = static_cast<double>(row), z = static_cast<double>(slice);
-    const double weightC = edgeArea(a, b, y, z), weightA = edgeArea(b, c, y, z),
-                 weightB = edgeArea(c, a, y, z);
-    const int side = edgeSide(a, b, weightC);
-    if (side == 0 || edgeSide(b, c, weightA) != side || edgeSide(c, a, weightB) != side)
+    const double weightC = computeEdgeArea(a, b, y, z), weightA = computeEdgeArea(b, c, y, z),
+                 weightB = computeEdgeArea(c, a, y, z);
+    const int side = findEdgeSide(a, b, weightC);
+    if (side == 0 || findEdgeSide(b, c, weightA) != side || findEdgeSide(c, a, weightB) != side)
       return;
     const double area = weightA + weightB + weightC;
     const double x =
@@ -100,7 +100,7 @@ voxelizeSurface(const std::vector<Vec3>& points,
   for (std::size_t i = 0; i < all.size(); i += 2) {
     if (i + 1 == all.size() || all[i + 1].row != all[i].row)
       return std::nullopt;
-    const auto [first, last] = integerRange(all[i].x, all[i + 1].x, size.x());
+    const auto [first, last] = findIntegers(all[i].x, all[i + 1].x, size.x());
     if (first <= last)
       runs.push_back({all[i].row % size.y(), all[i].row / size.y(), first, last + 1});
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Parameters of scattering apart from the albedo, as ScatteringFormulas-inl.h uses them.
+// Scattering parameters except the albedo, for ScatteringFormulas-inl.h.
 
 #include "model/medium/TransferFunction.h"
 

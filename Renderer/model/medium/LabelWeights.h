@@ -4,9 +4,9 @@
 //
 // Most voxels belong to a single component, and most others to two. The grid is divided into bricks
 // of 4^3 cells, each stored with all 5^3 voxels that interpolation inside it reads, so that a
-// look-up reads one brick. A pure brick is the number of its component. A mixed brick of k
-// components has k - 1 consecutive planes of 128 bytes, each with the weights of one component. The
-// component of the highest number gets the rest, computed per voxel in integers, so that it is
+// look-up reads one brick. A pure brick is stored as the number of its component. A mixed brick of
+// k components has k - 1 consecutive planes of 128 bytes, each with the weights of one component.
+// The component of the highest number gets the rest, computed per voxel in integers, so that it is
 // exactly zero where the component is absent.
 
 #include "model/volume/Mask.h"
@@ -36,7 +36,7 @@ public:
     std::array<std::uint8_t, voxelsInBrick> weights; ///< in 255ths, x fastest
     std::uint8_t component;
     std::uint8_t rest;   ///< component that gets the rest; the same in all planes of the brick
-    std::uint8_t isLast; ///< 1 in the brick's last plane; else 0, and the next plane belongs to it
+    std::uint8_t isLast; ///< 1 in the brick's last plane; 0: another of its planes follows
   };
   static_assert(sizeof(Plane) == 128);
 

@@ -83,7 +83,7 @@ public:
                       point.scalar, wantGradient,
                       interface + (component.isClipped ? cut : Vec3::Zero()));
   }
-  /// Gathers what the mixture's parts at a point depend on.
+  /// Evaluates the values that the mixture's parts at a point depend on.
   MixturePoint makePoint(const Vec3& index, double clipWeight) const {
     const double slope = m_mixture->needsGradient() ? m_field.gradient(index).norm() : 0.0;
     return {index, m_field.value(index), clipWeight, slope};

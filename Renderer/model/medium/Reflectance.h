@@ -1,6 +1,6 @@
 #pragma once
 // Conversion between albedo and reflectance. A thick, uniform scattering medium reflects less light
-// than its single-scattering albedo; materials are described by the color that is seen.
+// than its single-scattering albedo; materials are described by their visible color.
 
 #include "model/medium/PiecewiseLinear.h"
 

@@ -167,10 +167,10 @@ PiecewiseLinear<Channels> makeTable(const std::vector<Node>& nodes, Map map) {
   return Tabulator<Channels, Node, Map>(nodes, std::move(map)).build();
 }
 
-bool inUnitRange(double x) {
+bool isInUnitRange(double x) {
   return x >= 0.0 && x <= 1.0;
 }
-bool inUnitRange(const Rgb& c) {
+bool isInUnitRange(const Rgb& c) {
   return (c >= 0.0 && c <= 1.0).all();
 }
 
@@ -186,9 +186,9 @@ void checkNodes(const std::vector<Node>& nodes, const std::string& name,
     if (!(std::abs(node.x) <= 1e38) || (i > 0 && node.x < nodes[i - 1].x))
       throw inputError(source,
                        place + "x must be at most 1e38 and not less than the previous point's");
-    if (!inUnitRange(node.value))
+    if (!isInUnitRange(node.value))
       throw inputError(source, place + "value must be from 0 to 1");
-    if (!inUnitRange(node.midpoint) || !inUnitRange(node.sharpness))
+    if (!isInUnitRange(node.midpoint) || !isInUnitRange(node.sharpness))
       throw inputError(source, place + "midpoint and sharpness must be from 0 to 1");
   }
 }

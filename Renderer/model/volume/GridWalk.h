@@ -86,7 +86,7 @@ private:
   }
 
   /// t at the next face of an axis; infinity at the grid's outer faces: m_end ends the traversal,
-  /// so that rounding cannot leave the grid. It is computed from the face's coordinate rather than
+  /// so that rounding cannot leave the grid. t is computed from the face's coordinate rather than
   /// by adding steps, so that errors do not accumulate along the ray.
   double faceDistance(int axis) const {
     return m_remaining[axis] > 0 ? (m_face[axis] - m_origin[axis]) * m_inverse[axis] : infinity;

@@ -13,7 +13,7 @@ namespace fenestra {
 /// between 0 and 1. It is trilinear between centers, and its 1/2 level is the surface. Readers crop
 /// the mask to the segments' extent plus one voxel. Outside the grid the indicator is 0, and it
 /// falls linearly to 0 within one voxel of the outermost centers. Where the label map ends at a
-/// face of the volume, the extra voxel repeats the edge voxel, and callers stay in the volume.
+/// face of the volume, the extra voxel repeats the edge voxel; callers must stay in the volume.
 struct Mask {
   Grid grid;
   std::vector<std::uint8_t> voxels; ///< 0 to `maxValue`, x fastest

@@ -12,7 +12,7 @@ struct Span {
 };
 
 /// Voxels that interpolation in cell `c` of one axis can read.
-Span footprint(std::int64_t c, std::int64_t cellSize, std::int64_t voxels, int padding) {
+Span findFootprint(std::int64_t c, std::int64_t cellSize, std::int64_t voxels, int padding) {
   const std::int64_t first = c * cellSize - 1 - padding;
   const std::int64_t last = (c + 1) * cellSize + padding;
   return {std::max<std::int64_t>(first, 0), std::min(last, voxels - 1)};
@@ -79,17 +79,17 @@ void MinMaxGrid::fill(const Grid& grid, const LargeArray<Voxel>& voxels) {
   // Each row of cells is first reduced to one row of voxels, element-wise. This reads memory in
   // order and with vector instructions.
   const auto fillSlab = [&](std::int64_t cz) {
-    const Span z = footprint(cz, m_cellSize.z(), grid.size.z(), m_padding);
+    const Span z = findFootprint(cz, m_cellSize.z(), grid.size.z(), m_padding);
     std::vector<Voxel> low(static_cast<std::size_t>(grid.size.x())), high(low.size());
     for (std::int64_t cy = 0; cy < m_cellCount.y(); ++cy) {
-      const Span y = footprint(cy, m_cellSize.y(), grid.size.y(), m_padding);
+      const Span y = findFootprint(cy, m_cellSize.y(), grid.size.y(), m_padding);
       std::ranges::fill(low, std::numeric_limits<Voxel>::max());
       std::ranges::fill(high, std::numeric_limits<Voxel>::lowest());
       for (std::int64_t k = z.first; k <= z.last; ++k)
         for (std::int64_t j = y.first; j <= y.last; ++j)
           addRow(voxels.data() + grid.size.x() * (j + grid.size.y() * k), low, high);
       for (std::int64_t cx = 0; cx < m_cellCount.x(); ++cx) {
-        const auto [first, last] = footprint(cx, m_cellSize.x(), grid.size.x(), m_padding);
+        const auto [first, last] = findFootprint(cx, m_cellSize.x(), grid.size.x(), m_padding);
         const std::size_t cell = linearIndex({cx, cy, cz}, m_cellCount);
         m_low[cell] =
             static_cast<float>(*std::min_element(low.begin() + first, low.begin() + last + 1));

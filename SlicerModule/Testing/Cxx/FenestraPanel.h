@@ -33,10 +33,10 @@ struct Panel {
     combo->setCurrentIndex(combo->findData(data));
   }
   QString chosen(const char* box) const { return find<QComboBox>(box)->currentData().toString(); }
-  bool withDefault(const char* widget) const { return !find<QWidget>(widget)->isHidden(); }
+  bool isShown(const char* widget) const { return !find<QWidget>(widget)->isHidden(); }
   void set(const char* box, double value) const { find<QDoubleSpinBox>(box)->setValue(value); }
   std::string flag(const char* name) const { return settings()->GetFlag(name); }
-  Node* picture() const { return Node::SafeDownCast(nodes("RendersBox")->currentNode()); }
+  Node* chosenRender() const { return Node::SafeDownCast(nodes("RendersBox")->currentNode()); }
   qMRMLNodeComboBox* nodes(const char* name) const { return find<qMRMLNodeComboBox>(name); }
 };
 

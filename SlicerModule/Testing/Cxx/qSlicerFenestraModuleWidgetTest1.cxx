@@ -133,9 +133,9 @@ int checkClipping(const Panel& panel) {
   for (const char* automatic : {"labelsmoothing", "soft", "contextsaturation"})
     CHECK_STD_STRING(panel.flag(automatic), ""); // the renderer chooses
   panel.choose("ClipBox", "");
-  CHECK_BOOL(panel.withDefault("BoundaryBox"), true);
+  CHECK_BOOL(panel.isShown("BoundaryBox"), true);
   for (const char* other : {"ghostBox", "HoleBox", "holemarginBox", "PlaneBox", "PlaneNodeBox"})
-    CHECK_BOOL(panel.withDefault(other), false);
+    CHECK_BOOL(panel.isShown(other), false);
   CHECK_STD_STRING(panel.flag("boundary"), "exact"); // the default of a first focus
   panel.settings()->SetFlag("boundary", "");         // like a scene that Fenestra did not save
   CHECK_STD_STRING(panel.chosen("BoundaryBox").toStdString(), "spline");
@@ -150,8 +150,8 @@ int checkClipping(const Panel& panel) {
   panel.set("ghostBox", 25.0);
   CHECK_STD_STRING(panel.flag("ghost"), "0.25");
   panel.choose("ClipBox", "hole");
-  CHECK_BOOL(panel.withDefault("ghostBox"), false);
-  CHECK_BOOL(panel.withDefault("BoundaryBox"), false);
+  CHECK_BOOL(panel.isShown("ghostBox"), false);
+  CHECK_BOOL(panel.isShown("BoundaryBox"), false);
   for (const char* other : {"ghost", "boundary", "hole", "holemargin"}) // the renderer's defaults
     CHECK_STD_STRING(panel.flag(other), "");
   panel.choose("HoleBox", "sphere");
@@ -203,10 +203,10 @@ int checkClipping(const Panel& panel) {
 int checkMargins(const Panel& panel) {
   const std::map<std::string, std::string> before = panel.settings()->GetFlags();
   QListWidget& focus = *panel.find<QListWidget>("FocusList");
-  CHECK_BOOL(panel.withDefault("MarginEachBox"), false);
+  CHECK_BOOL(panel.isShown("MarginEachBox"), false);
   focus.item(1)->setCheckState(Qt::Checked);
-  CHECK_BOOL(panel.withDefault("MarginEachBox"), true);
-  CHECK_BOOL(panel.withDefault("Margin1"), false);
+  CHECK_BOOL(panel.isShown("MarginEachBox"), true);
+  CHECK_BOOL(panel.isShown("Margin1"), false);
   panel.find<QCheckBox>("MarginEachBox")->setChecked(true);
   panel.set("Margin0", 1.5);
   panel.set("Margin1", -0.5);
@@ -225,10 +225,10 @@ int checkPlane(const Panel& panel, vtkMRMLScene* scene) {
   panel.choose("ClipBox", "plane");
   CHECK_STD_STRING(panel.flag("clip"), "plane");
   CHECK_STD_STRING(panel.flag("plane"), ""); // placed by the focus
-  CHECK_BOOL(panel.withDefault("PlaneNodeBox"), false);
+  CHECK_BOOL(panel.isShown("PlaneNodeBox"), false);
   auto* combo = panel.find<QComboBox>("PlaneBox");
   combo->setCurrentIndex(1);
-  CHECK_BOOL(panel.withDefault("PlaneNodeBox"), true);
+  CHECK_BOOL(panel.isShown("PlaneNodeBox"), true);
   scene->RegisterNodeClass(vtkSmartPointer<vtkMRMLMarkupsPlaneNode>::New());
   auto* plane = vtkMRMLMarkupsPlaneNode::SafeDownCast(
       scene->AddNewNodeByClass("vtkMRMLMarkupsPlaneNode", "Cut"));
@@ -251,11 +251,11 @@ int checkPlane(const Panel& panel, vtkMRMLScene* scene) {
 }
 
 /// The panel offers only what the renderer supports.
-int checkPresets(const Panel& panel, const qFenestraCapabilities& abilities) {
-  const bool automatic = abilities.flags["view"].choices.contains("auto");
+int checkPresets(const Panel& panel, const qFenestraCapabilities& capabilities) {
+  const bool automatic = capabilities.flags["view"].choices.contains("auto");
   CHECK_BOOL(panel.find<QComboBox>("ViewBox")->findData("auto") >= 0, automatic);
-  const bool presets = abilities.flags.contains("preset");
-  CHECK_BOOL(panel.withDefault("PresetBox"), presets);
+  const bool presets = capabilities.flags.contains("preset");
+  CHECK_BOOL(panel.isShown("PresetBox"), presets);
   const std::map<std::string, std::string> before = panel.settings()->GetFlags();
   if (automatic) {
     panel.choose("ViewBox", "auto");
@@ -288,28 +288,28 @@ int checkPresets(const Panel& panel, const qFenestraCapabilities& abilities) {
 /// The panel shows withheld flags; file names become flags once allowed.
 int checkWithheld(const Panel& panel) {
   const std::map<std::string, std::string> flags = panel.settings()->GetFlags();
-  CHECK_BOOL(panel.withDefault("WithheldLabel"), false);
-  const char* attributes[] = {"transfer", "/nowhere/colours.json", "noise", "<b>", nullptr};
+  CHECK_BOOL(panel.isShown("WithheldLabel"), false);
+  const char* attributes[] = {"transfer", "/nowhere/mine.json", "noise", "<b>", nullptr};
   panel.settings()->ReadXMLAttributes(attributes);
   CHECK_BOOL(panel.find<QLabel>("WithheldLabel")->text().contains("transfer: /nowhere"), true);
   CHECK_BOOL(panel.find<QLabel>("WithheldLabel")->text().contains("noise: <b>"), true);
-  CHECK_BOOL(panel.withDefault("AllowButton"), true);
+  CHECK_BOOL(panel.isShown("AllowButton"), true);
   CHECK_STD_STRING(panel.flag("transfer"), "");
   panel.find<QPushButton>("AllowButton")->click();
-  CHECK_STD_STRING(panel.flag("transfer"), "/nowhere/colours.json");
-  CHECK_STD_STRING(panel.chosen("TransferBox").toStdString(), "/nowhere/colours.json");
-  CHECK_BOOL(panel.withDefault("AllowButton"), false);
+  CHECK_STD_STRING(panel.flag("transfer"), "/nowhere/mine.json");
+  CHECK_STD_STRING(panel.chosen("TransferBox").toStdString(), "/nowhere/mine.json");
+  CHECK_BOOL(panel.isShown("AllowButton"), false);
   panel.settings()->SetFlag("noise", "0.05"); // removes the last withheld flag
-  CHECK_BOOL(panel.withDefault("WithheldLabel"), false);
+  CHECK_BOOL(panel.isShown("WithheldLabel"), false);
   panel.settings()->SetFlags(flags);
   return EXIT_SUCCESS;
 }
 
 /// A turntable is rendered, played, stopped and resumed.
-int checkTurntable(const Panel& panel, const qFenestraCapabilities& abilities) {
-  CHECK_BOOL(panel.withDefault("Turntable"), abilities.hasTurntable());
-  CHECK_BOOL(panel.withDefault("Player"), false);
-  if (!abilities.hasTurntable())
+int checkTurntable(const Panel& panel, const qFenestraCapabilities& capabilities) {
+  CHECK_BOOL(panel.isShown("Turntable"), capabilities.hasTurntable());
+  CHECK_BOOL(panel.isShown("Player"), false);
+  if (!capabilities.hasTurntable())
     return EXIT_SUCCESS;
   auto* frames = panel.find<QSpinBox>("FramesBox");
   auto* turn = panel.find<QPushButton>("TurnButton");
@@ -318,13 +318,13 @@ int checkTurntable(const Panel& panel, const qFenestraCapabilities& abilities) {
   CHECK_STD_STRING(panel.flag("frames"), "3");
   CHECK_STD_STRING(panel.flag("degrees"), "30");
   CHECK_BOOL(endsOneRender(panel, [&] { turn->click(); }), true);
-  Node* turntable = panel.picture();
+  Node* turntable = panel.chosenRender();
   CHECK_NOT_NULL(turntable);
   CHECK_BOOL(turntable->IsTurntable(), true);
   CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 3);
   CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().startsWith("3 of 3 frames"), true);
-  CHECK_BOOL(panel.withDefault("Player"), true);
-  CHECK_BOOL(panel.withDefault("ResumeButton"), false);
+  CHECK_BOOL(panel.isShown("Player"), true);
+  CHECK_BOOL(panel.isShown("ResumeButton"), false);
   auto* slider = panel.find<QSlider>("FrameSlider");
   CHECK_INT(slider->maximum(), 2);
   panel.find<QToolButton>("PlayButton")->setChecked(true);
@@ -341,30 +341,30 @@ int checkTurntable(const Panel& panel, const qFenestraCapabilities& abilities) {
                        });
   CHECK_BOOL(endsOneRender(panel, [&] { turn->click(); }), true);
   QObject::disconnect(connection);
-  turntable = panel.picture();
+  turntable = panel.chosenRender();
   const int some = vtkSlicerFenestraLogic::GetNumberOfFrames(turntable);
   std::cout << some << " frames before the stop\n";
   CHECK_BOOL(some > 0 && some < 60, true);
-  CHECK_BOOL(panel.withDefault("ResumeButton"), true);
+  CHECK_BOOL(panel.isShown("ResumeButton"), true);
   turntable->SetFlag("frames", "x"); // a turntable with an invalid count cannot be resumed
   CHECK_BOOL(panel.widget->session()->canResume(turntable), false);
   turntable->SetFlag("frames", "60");
   CHECK_BOOL(endsOneRender(panel, [&] { panel.find<QPushButton>("ResumeButton")->click(); }), true);
-  CHECK_POINTER(panel.picture(), turntable);
+  CHECK_POINTER(panel.chosenRender(), turntable);
   CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 60);
   CHECK_INT(slider->maximum(), 59);
-  CHECK_BOOL(panel.withDefault("ResumeButton"), false);
+  CHECK_BOOL(panel.isShown("ResumeButton"), false);
   return EXIT_SUCCESS;
 }
 
 int checkRenders(const Panel& panel) {
   auto* button = panel.find<QPushButton>("RenderButton");
   CHECK_BOOL(endsOneRender(panel, [&] { button->click(); }), true);
-  Node* first = panel.picture();
+  Node* first = panel.chosenRender();
   CHECK_NOT_NULL(first);
   CHECK_BOOL(panel.find<QLabel>("StateLabel")->text().startsWith("Done: "), true);
   CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().contains("samples"), true);
-  CHECK_BOOL(panel.withDefault("MeasuresLabel"), true);
+  CHECK_BOOL(panel.isShown("MeasuresLabel"), true);
   CHECK_BOOL(panel.find<QLabel>("MeasuresLabel")->text().contains("Focus visible"), true);
   for (const char* enabled : {"ShowButton", "RepeatButton", "SaveButton"})
     CHECK_BOOL(panel.find<QPushButton>(enabled)->isEnabled(), true);
@@ -376,18 +376,18 @@ int checkRenders(const Panel& panel) {
   CHECK_BOOL(endsOneRender(panel, [&] { panel.find<QPushButton>("RepeatButton")->click(); }), true);
   CHECK_STD_STRING(panel.settings()->GetFlag("view"), "left");
   CHECK_STD_STRING(panel.chosen("RigBox").toStdString(), "soft");
-  CHECK_BOOL(panel.picture() != first, true);
+  CHECK_BOOL(panel.chosenRender() != first, true);
   CHECK_BOOL(radianceOf(first).isEmpty(), false);
-  CHECK_BOOL(radianceOf(panel.picture()) == radianceOf(first), true);
+  CHECK_BOOL(radianceOf(panel.chosenRender()) == radianceOf(first), true);
 
   // An empty segment gives a message, and the earlier image stays chosen.
   QListWidget& focus = *panel.find<QListWidget>("FocusList");
   focus.item(0)->setCheckState(Qt::Unchecked);
   focus.item(1)->setCheckState(Qt::Checked);
-  Node* const before = panel.picture();
+  Node* const before = panel.chosenRender();
   CHECK_BOOL(endsOneRender(panel, [&] { button->click(); }), true);
   CHECK_BOOL(panel.find<QLabel>("StateLabel")->text().contains("choose segments"), true);
-  CHECK_POINTER(panel.picture(), before);
+  CHECK_POINTER(panel.chosenRender(), before);
   panel.find<QPushButton>("ShowButton")->click(); // another action clears the message
   CHECK_STD_STRING(panel.find<QLabel>("StateLabel")->text().toStdString(), "");
   return EXIT_SUCCESS;
@@ -409,14 +409,14 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   CHECK_NOT_NULL(widget);
   const QScopedPointer<qSlicerFenestraModuleWidget> owner(widget);
   const Panel panel{widget, vtkSlicerFenestraLogic::SafeDownCast(module.logic())};
-  qFenestraCapabilities abilities;
+  qFenestraCapabilities capabilities;
   bool learned = false;
   QObject::connect(widget->session(), &qSlicerFenestraSession::learned,
-                   [&](const qFenestraCapabilities& told) { abilities = told, learned = true; });
+                   [&](const qFenestraCapabilities& told) { capabilities = told, learned = true; });
   widget->enter();
   CHECK_EXIT_SUCCESS(checkEmpty(panel));
   CHECK_BOOL(waitFor([&] { return learned; }), true);
-  CHECK_BOOL(abilities.flags["clip"].choices.contains("ghost"), true);
+  CHECK_BOOL(capabilities.flags["clip"].choices.contains("ghost"), true);
   widget->exit();
 
   vtkMRMLNode* volume = FenestraTesting::addVolume(scene);
@@ -429,9 +429,9 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkClipping(panel));
   CHECK_EXIT_SUCCESS(checkMargins(panel));
   CHECK_EXIT_SUCCESS(checkPlane(panel, scene));
-  CHECK_EXIT_SUCCESS(checkPresets(panel, abilities));
+  CHECK_EXIT_SUCCESS(checkPresets(panel, capabilities));
   CHECK_EXIT_SUCCESS(checkWithheld(panel));
-  CHECK_EXIT_SUCCESS(checkTurntable(panel, abilities));
+  CHECK_EXIT_SUCCESS(checkTurntable(panel, capabilities));
   CHECK_EXIT_SUCCESS(checkRenders(panel));
 
   // A segment is added and removed outside the panel; then the segmentation is deselected.

@@ -64,8 +64,8 @@ int chooseMaterial(const Panel& panel) {
 int render(const Panel& panel, const char* from) {
   panel.choose("ViewBox", from);
   CHECK_BOOL(endsOneRender(panel, [&] { panel.find<QPushButton>("RenderButton")->click(); }), true);
-  CHECK_NOT_NULL(panel.picture());
-  CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == panel.picture(); }), true);
+  CHECK_NOT_NULL(panel.chosenRender());
+  CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == panel.chosenRender(); }), true);
   return EXIT_SUCCESS;
 }
 
@@ -75,8 +75,8 @@ int checkClosed(const Panel& panel) {
     CHECK_STD_STRING(labelText(panel, label), "");
   CHECK_BOOL(panel.find<QLabel>("PreviewLabel")->text().startsWith("Load a volume"), true);
   for (const char* widget : {"DetailsButton", "ProgressBar", "MeasuresLabel", "Player"})
-    CHECK_BOOL(panel.withDefault(widget), false);
-  CHECK_NULL(panel.picture());
+    CHECK_BOOL(panel.isShown(widget), false);
+  CHECK_NULL(panel.chosenRender());
   return EXIT_SUCCESS;
 }
 
@@ -99,8 +99,8 @@ int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   CHECK_STD_STRING(findMaterial(panel, 0)->currentData().toString().toStdString(), "spleen");
   CHECK_BOOL(panel.find<QPushButton>("RenderButton")->isEnabled(), true);
   CHECK_STD_STRING(labelText(panel, "StateLabel"), "");
-  CHECK_POINTER(panel.picture(), scene->GetFirstNodeByName("Ball render"));
-  CHECK_POINTER(panel.logic->GetShownRender(), panel.picture());
+  CHECK_POINTER(panel.chosenRender(), scene->GetFirstNodeByName("Ball render"));
+  CHECK_POINTER(panel.logic->GetShownRender(), panel.chosenRender());
   CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().contains("samples"), true);
   CHECK_BOOL(
       waitFor([&] { return labelText(panel, "PreviewStateLabel").rfind("Preview:", 0) == 0; }),
@@ -114,11 +114,11 @@ int checkEnd(const Panel& panel, vtkMRMLScene* scene, qSlicerFenestraSession* se
   panel.find<QPushButton>("RenderButton")->click();
   panel.find<QPushButton>("RenderButton")->click();
   CHECK_INT(session->waitingCount(), 1);
-  CHECK_BOOL(waitFor([&] { return panel.withDefault("ProgressBar"); }), true);
+  CHECK_BOOL(waitFor([&] { return panel.isShown("ProgressBar"); }), true);
   scene->Clear(false);
   CHECK_BOOL(waitFor([&] { return !session->isRendering(); }), true);
   CHECK_STD_STRING(labelText(panel, "StateLabel"), "Stopped immediately, without an image.");
-  CHECK_BOOL(panel.withDefault("ProgressBar"), false);
+  CHECK_BOOL(panel.isShown("ProgressBar"), false);
   return EXIT_SUCCESS;
 }
 
@@ -157,9 +157,9 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
 
   // Two images; the chosen one is displayed, and saved as such.
   CHECK_EXIT_SUCCESS(render(panel, "left"));
-  Node* const first = panel.picture();
+  Node* const first = panel.chosenRender();
   CHECK_EXIT_SUCCESS(render(panel, "right"));
-  CHECK_BOOL(panel.picture() != first, true);
+  CHECK_BOOL(panel.chosenRender() != first, true);
   panel.nodes("RendersBox")->setCurrentNode(first);
   CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == first; }), true);
   CHECK_BOOL(labelText(panel, "StateLabel").rfind("Done:", 0) == 0, true);

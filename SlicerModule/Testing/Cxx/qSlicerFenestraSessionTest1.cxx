@@ -131,7 +131,7 @@ int checkTwoRenders(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node* 
 /// A stopped render keeps its finished samples.
 int checkStop(qSlicerFenestraSession& session, Node* settings, SignalRecorder& recorder) {
   settings->SetFlag("samples", "100000000");
-  Node* long_ = session.render(settings);
+  Node* unlimited = session.render(settings);
   recorder.progress = 0;
   CHECK_BOOL(waitFor([&] { return recorder.progress > 3; }), true);
   QElapsedTimer watch;
@@ -140,7 +140,7 @@ int checkStop(qSlicerFenestraSession& session, Node* settings, SignalRecorder& r
   CHECK_BOOL(waitFor([&] { return recorder.ended == 3; }), true);
   std::cout << "Stopped after " << watch.elapsed() << " ms\n";
   CHECK_INT(static_cast<int>(recorder.last.kind), static_cast<int>(Kind::stopped));
-  CHECK_POINTER(recorder.render, long_);
+  CHECK_POINTER(recorder.render, unlimited);
   return EXIT_SUCCESS;
 }
 
@@ -162,10 +162,10 @@ int checkFailures(vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session
   CHECK_BOOL(waitFor([&] { return recorder.ended == 5; }), true);
   CHECK_INT(static_cast<int>(recorder.last.kind), static_cast<int>(Kind::failed));
   CHECK_INT(scene->GetNumberOfNodes(), nodes);
-  qSlicerFenestraSession without(logic, "/nowhere/fenestra");
-  SignalRecorder other(without);
-  CHECK_NULL(without.render(settings));
-  CHECK_BOOL(other.last.message.contains("missing"), true);
+  qSlicerFenestraSession broken(logic, "/nowhere/fenestra");
+  SignalRecorder recorderOfBroken(broken);
+  CHECK_NULL(broken.render(settings));
+  CHECK_BOOL(recorderOfBroken.last.message.contains("missing"), true);
   CHECK_INT(scene->GetNumberOfNodes(), nodes);
   return EXIT_SUCCESS;
 }
@@ -176,14 +176,14 @@ int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node
   const QString file = session.results().findFile(render, "png");
   CHECK_BOOL(file.isEmpty(), false);
   scene->Clear(false);
-  Node* stranger = nullptr;
-  for (int i = 0; i < 20 && (!stranger || id != stranger->GetID()); ++i)
-    stranger = Node::SafeDownCast(scene->AddNewNodeByClass("vtkMRMLFenestraRenderNode"));
-  CHECK_STD_STRING(std::string(stranger->GetID()), id);
-  stranger->SetFlag("frames", "x");
-  CHECK_BOOL(session.results().findFile(stranger, "png").isEmpty(), true);
-  CHECK_BOOL(session.results().findFrames(stranger).isEmpty(), true);
-  CHECK_BOOL(session.canResume(stranger), false);
+  Node* other = nullptr;
+  for (int i = 0; i < 20 && (!other || id != other->GetID()); ++i)
+    other = Node::SafeDownCast(scene->AddNewNodeByClass("vtkMRMLFenestraRenderNode"));
+  CHECK_STD_STRING(std::string(other->GetID()), id);
+  other->SetFlag("frames", "x");
+  CHECK_BOOL(session.results().findFile(other, "png").isEmpty(), true);
+  CHECK_BOOL(session.results().findFrames(other).isEmpty(), true);
+  CHECK_BOOL(session.canResume(other), false);
   session.closeScene(); // the module does this in Slicer
   CHECK_BOOL(waitFor([&] { return !QFileInfo::exists(file); }), true);
   return EXIT_SUCCESS;
@@ -216,13 +216,13 @@ int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, qSlicerFenes
   CHECK_BOOL(progressEvents > 0, true);
   CHECK_INT(endEvents, 1);
   CHECK_STD_STRING(render->GetProblem(), "");
-  Node* watch = logic->Render(settings, true);
-  CHECK_NOT_NULL(watch);
-  CHECK_NOT_NULL(watch->GetNodeReference(Node::PictureRole));
+  Node* finished = logic->Render(settings, true);
+  CHECK_NOT_NULL(finished);
+  CHECK_NOT_NULL(finished->GetNodeReference(Node::PictureRole));
   // Results are removed with their render.
-  const std::string picture = watch->GetNodeReferenceID(Node::PictureRole);
-  const std::string depth = watch->GetNodeReferenceID(Node::DepthRole);
-  scene->RemoveNode(watch);
+  const std::string picture = finished->GetNodeReferenceID(Node::PictureRole);
+  const std::string depth = finished->GetNodeReferenceID(Node::DepthRole);
+  scene->RemoveNode(finished);
   CHECK_NULL(scene->GetNodeByID(picture));
   CHECK_NULL(scene->GetNodeByID(depth));
   return EXIT_SUCCESS;

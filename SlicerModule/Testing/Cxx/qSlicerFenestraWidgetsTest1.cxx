@@ -20,7 +20,7 @@
 namespace {
 
 using Flags = std::map<std::string, std::string>;
-using TransferChoice = qSlicerFenestraLook;
+using Look = qSlicerFenestraLook;
 using Clipping = qSlicerFenestraClipping;
 
 QComboBox& box(const QWidget& widget, const char* name) {
@@ -41,7 +41,7 @@ void press(QWidget& widget, int key, const QString& text = {}) {
 }
 
 /// Nonempty flags that the widget writes.
-Flags takeFlags(const TransferChoice& look) {
+Flags takeFlags(const Look& look) {
   Flags flags, given;
   look.take(flags);
   for (const auto& [name, value] : flags)
@@ -51,7 +51,7 @@ Flags takeFlags(const TransferChoice& look) {
 }
 
 int checkLookDefaults() {
-  TransferChoice look;
+  Look look;
   const Flags gradient = {{"background", "gradient"}};
   CHECK_BOOL(takeFlags(look) == gradient, true);
   look.show(gradient, {}, false);
@@ -79,8 +79,8 @@ int checkLookDefaults() {
 }
 
 /// Flag values that the widgets cannot represent stay until the user chooses another.
-int checkLookKeeps() {
-  TransferChoice look;
+int checkLookKeepsUnknownValues() {
+  Look look;
   const Flags flags = {{"transfer", "CT-AAA"},
                        {"lights", R"({"lights": [{"type": "environment", "radiance": 1}]})"},
                        {"background", "0.3,0.2,0.1"},
@@ -101,7 +101,7 @@ int checkLookKeeps() {
 }
 
 int checkRigs() {
-  TransferChoice look;
+  Look look;
   const auto strength = [&look](int i) {
     return look.findChild<ctkSliderWidget*>(QString("Strength%1").arg(i));
   };
@@ -119,7 +119,7 @@ int checkRigs() {
   const QString stored = look.take(flags);
   CHECK_STD_STRING(stored.toStdString(), "studio 50 100 100 100");
   CHECK_BOOL(flags["lights"].front() == '{', true);
-  TransferChoice again;
+  Look again;
   again.show(flags, stored, false);
   CHECK_STD_STRING(box(again, "RigBox").currentData().toString().toStdString(), "studio");
   CHECK_DOUBLE(again.findChild<ctkSliderWidget*>("Strength0")->value(), 50.0);
@@ -130,24 +130,24 @@ int checkRigs() {
 }
 
 /// Old renderers lack exposure and tone.
-int checkAbilities() {
-  TransferChoice look;
-  qFenestraCapabilities abilities;
-  look.setCapabilities(abilities);
+int checkCapabilities() {
+  Look look;
+  qFenestraCapabilities capabilities;
+  look.setCapabilities(capabilities);
   CHECK_BOOL(number(look, "ExposureBox").isHidden(), true);
-  abilities.flags["exposure"] = abilities.flags["tone"] = {};
-  look.setCapabilities(abilities);
+  capabilities.flags["exposure"] = capabilities.flags["tone"] = {};
+  look.setCapabilities(capabilities);
   CHECK_BOOL(number(look, "ExposureBox").isHidden(), false);
   CHECK_BOOL(box(look, "ToneBox").isHidden(), false);
   return EXIT_SUCCESS;
 }
 
 /// Anatomies have icons where the resources contain one.
-int checkPictures() {
+int checkIcons() {
   qSlicerFenestraPanel panel;
-  qFenestraCapabilities abilities;
-  abilities.flags["preset"].text = "(spine, heart, lungs)";
-  panel.setCapabilities(abilities);
+  qFenestraCapabilities capabilities;
+  capabilities.flags["preset"].text = "(spine, heart, lungs)";
+  panel.setCapabilities(capabilities);
   QComboBox& anatomies = box(panel, "PresetBox");
   CHECK_INT(anatomies.count(), 5);
   for (const char* name : {"spine", "heart", "lungs"})
@@ -198,10 +198,10 @@ int checkAutomatic() {
 int qSlicerFenestraWidgetsTest1(int argc, char* argv[]) {
   const QApplication application(argc, argv);
   CHECK_EXIT_SUCCESS(checkLookDefaults());
-  CHECK_EXIT_SUCCESS(checkLookKeeps());
+  CHECK_EXIT_SUCCESS(checkLookKeepsUnknownValues());
   CHECK_EXIT_SUCCESS(checkRigs());
-  CHECK_EXIT_SUCCESS(checkAbilities());
-  CHECK_EXIT_SUCCESS(checkPictures());
+  CHECK_EXIT_SUCCESS(checkCapabilities());
+  CHECK_EXIT_SUCCESS(checkIcons());
   CHECK_EXIT_SUCCESS(checkAutomatic());
   return EXIT_SUCCESS;
 }

@@ -56,7 +56,7 @@ QByteArray radianceOf(Node* render) {
 qSlicerFenestraTour::qSlicerFenestraTour(const QString& report) : qSlicerFenestraUser(report) {}
 
 bool qSlicerFenestraTour::run() {
-  join(1000);
+  wait(1000);
   takeScreenshot("1-start");
   struct Step {
     const char* name;
@@ -95,7 +95,7 @@ bool qSlicerFenestraTour::loadPhantom() {
     return false;
   auto* fenestra = qSlicerApplication::application()->moduleLogic("Fenestra");
   vtkSlicerFenestraLogic::SafeDownCast(fenestra)->ShowNewestVolume(); // as loadSample() does
-  join(2000);
+  wait(2000);
   takeScreenshot("2-loaded");
   return true;
 }
@@ -103,7 +103,7 @@ bool qSlicerFenestraTour::loadPhantom() {
 bool qSlicerFenestraTour::showModule() {
   if (!openModule() || !waitFor([this] { return m_previews > 0; }))
     return false;
-  join(1500);
+  wait(1500);
   takeScreenshot("3-opened");
   return true;
 }
@@ -128,7 +128,7 @@ bool qSlicerFenestraTour::chooseCartilage() {
   if (!waitFor([&] { return m_previews > before; }))
     return false;
   m_measurements["previewAfterFocusMs"] = static_cast<int>(watch.elapsed());
-  join(3000);
+  wait(3000);
   m_measurements["longestPauseWhilePreviewingMs"] = m_pulse.longest();
   takeScreenshot("4-focus");
   return true;
@@ -142,7 +142,7 @@ bool qSlicerFenestraTour::turnCamera() {
   showVolumeRendering(true);
   const int beside = slowestTurn();
   m_measurements["previewAfterTurnBesideVolumeRenderingMs"] = beside;
-  join(3000);
+  wait(3000);
   takeScreenshot("5-turned");
   return alone >= 0 && beside >= 0;
 }
@@ -153,7 +153,7 @@ void qSlicerFenestraTour::showVolumeRendering(bool visible) {
       "vtkMRMLVolumeRenderingDisplayNode", displays);
   for (vtkMRMLNode* display : displays)
     vtkMRMLDisplayNode::SafeDownCast(display)->SetVisibility(visible);
-  join(1000);
+  wait(1000);
 }
 
 int qSlicerFenestraTour::slowestTurn() {
@@ -161,7 +161,7 @@ int qSlicerFenestraTour::slowestTurn() {
       qSlicerApplication::application()->mrmlScene()->GetFirstNodeByClass("vtkMRMLCameraNode"));
   int slowest = 0;
   for (int turn = 0; turn < 5; ++turn) {
-    join(300);
+    wait(300);
     const int before = m_previews;
     QElapsedTimer watch;
     watch.start();
@@ -177,16 +177,16 @@ int qSlicerFenestraTour::slowestTurn() {
 bool qSlicerFenestraTour::render() {
   if (auto* quality = m_panel->findChild<QComboBox*>("QualityBox"))
     quality->setCurrentIndex(qEnvironmentVariableIntValue("FENESTRA_TOUR_QUALITY"));
-  join(1000);
+  wait(1000);
   const int before = m_ended;
   if (!click("RenderButton"))
     return false;
-  join(1500);
+  wait(1500);
   takeScreenshot("6-rendering");
   if (!waitFor([&] { return m_ended > before; }, 300000))
     return false;
   m_measurements["render"] = m_panel->findChild<QLabel*>("StateLabel")->text();
-  join(8000); // volume rendering in a new view is slow without a GPU
+  wait(8000); // volume rendering in a new view is slow without a GPU
   takeScreenshot("7-result");
   return lastRender() && !radianceOf(lastRender()).isEmpty();
 }
@@ -204,7 +204,7 @@ bool qSlicerFenestraTour::stopRender() {
   m_pulse.start();
   if (!click("RenderButton"))
     return false;
-  join(3000);
+  wait(3000);
   m_measurements["longestPauseWhileRenderingMs"] = m_pulse.longest();
   m_pulse.start();
   QElapsedTimer watch;
@@ -217,7 +217,7 @@ bool qSlicerFenestraTour::stopRender() {
     return false;
   QObject::disconnect(connection);
   m_measurements["stoppedAfterMs"] = after;
-  join(1000);
+  wait(1000);
   m_measurements["longestPauseWithResultMs"] = m_pulse.longest();
   settings->SetFlags(flags);
   showVolumeRendering(true);
@@ -241,7 +241,7 @@ bool qSlicerFenestraTour::changeClipping() {
     details->setCollapsed(false);
     const bool chosen = choose("ClipBox", "");
     set("contextsaturationBox", 30.0);
-    join(300);
+    wait(300);
     scrollTo("ClipDetails");
     return chosen;
   });
@@ -273,10 +273,10 @@ bool qSlicerFenestraTour::renderMeasured() {
   const int before = m_ended;
   if (!click("RenderButton") || !waitFor([&] { return m_ended > before; }, 300000))
     return false;
-  join(2000);
+  wait(2000);
   fold("View and light", true);
   scrollTo("SaveButton");
-  join(500);
+  wait(500);
   takeScreenshot("16-measures");
   auto* measures = m_panel->findChild<QLabel*>("MeasuresLabel");
   m_measurements["measures"] = measures->text();
@@ -292,29 +292,29 @@ bool qSlicerFenestraTour::renderTurntable() {
   settings()->SetFlag("size", "256x256");
   m_panel->findChild<QSpinBox*>("FramesBox")->setValue(8);
   set("DegreesBox", 120.0);
-  join(300);
+  wait(300);
   scrollTo("StateLabel");
   scrollTo("TurnButton");
   const int before = m_ended;
   if (!click("TurnButton"))
     return false;
-  join(3000);
+  wait(3000);
   takeScreenshot("17-turning");
   if (!waitFor([&] { return m_ended > before; }, 300000))
     return false;
-  join(3000);
+  wait(3000);
   fold("Turntable", true);
   scrollTo("SaveButton");
   auto* slider = m_panel->findChild<QSlider*>("FrameSlider");
-  std::set<int> seen;
-  const auto connection =
-      QObject::connect(slider, &QSlider::valueChanged, [&seen](int frame) { seen.insert(frame); });
+  std::set<int> shownFrames;
+  const auto connection = QObject::connect(
+      slider, &QSlider::valueChanged, [&shownFrames](int frame) { shownFrames.insert(frame); });
   click("PlayButton");
-  const bool played = waitFor([&] { return seen.size() == 8; });
+  const bool played = waitFor([&] { return shownFrames.size() == 8; });
   click("PlayButton");
   QObject::disconnect(connection);
   slider->setValue(5);
-  join(1000);
+  wait(1000);
   takeScreenshot("18-turntable");
   m_measurements["turntable"] = m_panel->findChild<QLabel*>("DescriptionLabel")->text();
   settings()->SetFlags(flags);
@@ -336,15 +336,15 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   if (!io->saveNodes("SceneFile", properties))
     return false;
   scene->Clear(false);
-  join(1000);
+  wait(1000);
   takeScreenshot("8-closed");
-  for (const char* words : {"StateLabel", "PreviewStateLabel", "DescriptionLabel"})
-    if (!m_panel->findChild<QLabel*>(words)->text().isEmpty())
+  for (const char* label : {"StateLabel", "PreviewStateLabel", "DescriptionLabel"})
+    if (!m_panel->findChild<QLabel*>(label)->text().isEmpty())
       return false;
   const int previews = m_previews;
   if (!io->loadScene(file) || !waitFor([&] { return m_previews > previews; }))
     return false;
-  join(2000);
+  wait(2000);
   auto* again = Node::SafeDownCast(scene->GetFirstNodeByName(name.c_str()));
   if (!again)
     return false;
@@ -354,12 +354,12 @@ bool qSlicerFenestraTour::saveAndRepeat() {
     if (!m_panel->findChild<qMRMLNodeComboBox*>(subject)->currentNode())
       return false;
   m_panel->findChild<qMRMLNodeComboBox*>("RendersBox")->setCurrentNode(again);
-  join(2000);
+  wait(2000);
   takeScreenshot("9-reloaded");
   const int ended = m_ended;
   if (!click("RepeatButton") || !waitFor([&] { return m_ended > ended; }, 300000))
     return false;
-  join(2000);
+  wait(2000);
   takeScreenshot("10-repeated");
   m_measurements["repeatedBitForBit"] = radianceOf(lastRender()) == before;
   return m_measurements["repeatedBitForBit"].toBool() && m_measurements["readBack"].toBool();
@@ -386,24 +386,24 @@ bool qSlicerFenestraTour::runCommand() {
   node->SetParameterAsInt("samples", 16);
   node->SetParameterAsString("size", "512x512");
   m_window->findChild<qSlicerModuleSelectorToolBar*>()->selectModule("FenestraCommand");
-  join(500);
+  wait(500);
   auto* panel = m_window->findChild<qSlicerCLIModuleWidget*>();
   if (!panel)
     return false;
   panel->setCurrentCommandLineModuleNode(node);
-  join(500);
+  wait(500);
   auto* apply = panel->findChild<QAbstractButton*>("ApplyPushButton");
   if (!apply || !apply->isEnabled())
     return false;
   QTest::mouseClick(apply, Qt::LeftButton);
-  const auto over = [node] {
+  const auto isCompleted = [node] {
     return !node->IsBusy() && (node->GetStatus() & vtkMRMLCommandLineModuleNode::Completed) != 0;
   };
-  if (!waitFor(over, 300000))
+  if (!waitFor(isCompleted, 300000))
     return false;
-  join(1000);
-  faceOutput(output);
-  join(1000);
+  wait(1000);
+  alignViewWithOutput(output);
+  wait(1000);
   takeScreenshot("11-command");
   m_measurements["commandLineModule"] = node->GetStatusString();
   vtkImageData* image = output->GetImageData();
@@ -411,9 +411,9 @@ bool qSlicerFenestraTour::runCommand() {
          node->GetErrorText().empty() && image && image->GetDimensions()[0] == 512;
 }
 
-/// Turns the slice view as its menu does: first coronal, then to the image's plane, without segment
+/// Rotates the slice view like its menu: first to coronal, then to the image's plane. Hides segment
 /// outlines.
-void qSlicerFenestraTour::faceOutput(vtkMRMLVolumeNode* output) {
+void qSlicerFenestraTour::alignViewWithOutput(vtkMRMLVolumeNode* output) {
   auto* application = qSlicerApplication::application();
   std::vector<vtkMRMLNode*> outlines;
   application->mrmlScene()->GetNodesByClass("vtkMRMLSegmentationDisplayNode", outlines);

@@ -30,7 +30,7 @@ private:
   bool renderTurntable();
   bool saveAndRepeat();
   bool runCommand();
-  void faceOutput(vtkMRMLVolumeNode* output);
+  void alignViewWithOutput(vtkMRMLVolumeNode* output);
 
   qSlicerFenestraPulse m_pulse;
   QJsonObject m_measurements;

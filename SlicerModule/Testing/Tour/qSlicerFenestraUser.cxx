@@ -54,7 +54,7 @@ bool qSlicerFenestraUser::openModule() {
   if (!selector)
     return false;
   selector->selectModule("Fenestra");
-  join(500);
+  wait(500);
   m_panel = m_window->findChild<qSlicerFenestraModuleWidget*>();
   if (!m_panel)
     return false;
@@ -70,7 +70,7 @@ bool qSlicerFenestraUser::click(const char* button) {
   if (!found || !found->isEnabled())
     return false;
   QTest::mousePress(found, Qt::LeftButton);
-  join(50); // a typical click
+  wait(50); // a typical click
   QTest::mouseRelease(found, Qt::LeftButton);
   return true;
 }
@@ -96,7 +96,7 @@ void qSlicerFenestraUser::scrollTo(const char* widget) {
 
 void qSlicerFenestraUser::fold(const char* section, bool folded) {
   m_panel->findChild<ctkCollapsibleButton*>(section)->setCollapsed(folded);
-  join(300); // for the new layout
+  wait(300); // for the new layout
 }
 
 /// Takes a screenshot of the preview after a change.
@@ -105,7 +105,7 @@ bool qSlicerFenestraUser::takePreviewScreenshot(const char* name,
   const int before = m_previews;
   if (!action() || !waitFor([&] { return m_previews > before; }))
     return false;
-  join(4000);
+  wait(4000);
   takeScreenshot(name);
   return m_panel->findChild<QLabel*>("PreviewStateLabel")->text().startsWith("Preview:");
 }
@@ -118,7 +118,7 @@ bool qSlicerFenestraUser::waitFor(const std::function<bool()>& condition, int mi
   return condition();
 }
 
-void qSlicerFenestraUser::join(int milliseconds) {
+void qSlicerFenestraUser::wait(int milliseconds) {
   QElapsedTimer watch;
   watch.start();
   while (watch.elapsed() / timeFactor() < milliseconds)

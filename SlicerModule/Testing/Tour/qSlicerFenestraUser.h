@@ -24,7 +24,7 @@ protected:
   void scrollTo(const char* widget);
   void fold(const char* section, bool folded);
   bool waitFor(const std::function<bool()>& condition, int milliseconds = 60000);
-  void join(int milliseconds);
+  void wait(int milliseconds);
   void takeScreenshot(const char* name);
   bool takePreviewScreenshot(const char* name, const std::function<bool()>& action);
 

@@ -34,21 +34,21 @@ node.SetNodeReferenceID(Node.GetVolumeNodeReferenceRole(), "vtkMRMLScalarVolumeN
 assert node.GetNodeReferenceID("volume") == "vtkMRMLScalarVolumeNode1"
 
 read = Node()
-read.ReadAll(["name", "other", "clip", "surface", "transfer", "/etc/passwd", "mood", "<deep>"])
+read.ReadAttributes(["name", "other", "clip", "surface", "transfer", "/etc/passwd", "mood", "<deep>"])
 assert read.GetFlag("clip") == "surface" and read.GetFlag("transfer") == "", "file names are withheld"
 assert read.WithholdsFiles()
-written = read.Written()
+written = read.ToXml()
 assert all(part in written for part in ('clip="surface"', 'transfer="/etc/passwd"', 'mood="&lt;deep>"'))
 
-scene = node.Written()
+scene = node.ToXml()
 assert 'materials="library"' in scene and "color=#963e2e\\, clip=no" in scene
 again = Node()
-again.ReadAll([text for pair in stored.items() for text in pair])
+again.ReadAttributes([text for pair in stored.items() for text in pair])
 assert all(one.GetFlag(name) == value for name, value in stored.items() for one in (node, again))
 
 copy = Node()
 copy.CopyContent(read)
-assert copy.Written() == written and copy.HasCopyContent()
+assert copy.ToXml() == written and copy.HasCopyContent()
 copy.AllowFiles()
 assert copy.GetFlag("transfer") == "/etc/passwd"
 
@@ -71,7 +71,7 @@ for x, pixel in enumerate(pixels):
 
 
 def displayed(node):
-    image = node.Displayed(picture)
+    image = node.GetDisplayedImage(picture)
     return [tuple(int(image.GetScalarComponentAsDouble(x, 0, 0, component))
                   for component in range(image.GetNumberOfScalarComponents())) for x in range(3)]
 

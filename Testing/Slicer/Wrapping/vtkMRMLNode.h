@@ -54,13 +54,13 @@ public:
   int StartModify() { return 0; }
   void EndModify(int) {}
 
-  /// Output of WriteXML as text, and its inverse for `name value name value ...`, for scripts.
-  std::string Written() {
+  /// For scripts: the output of WriteXML, and a reader of the list `name, value, name, value, ...`.
+  std::string ToXml() {
     std::ostringstream text;
     this->WriteXML(text, 0);
     return text.str();
   }
-  void ReadAll(const std::vector<std::string>& namesAndValues) {
+  void ReadAttributes(const std::vector<std::string>& namesAndValues) {
     std::vector<const char*> atts;
     for (const std::string& text : namesAndValues)
       atts.push_back(text.c_str());

@@ -25,7 +25,7 @@ public:
   }
 
   /// Image as a slice view receives it, for scripts.
-  vtkImageData* Displayed(vtkImageData* picture) {
+  vtkImageData* GetDisplayedImage(vtkImageData* picture) {
     vtkNew<vtkTrivialProducer> source;
     source->SetOutput(picture);
     this->SetInputToImageDataPipeline(source->GetOutputPort());

@@ -3,7 +3,7 @@
 
 #include "files/images/ImageReader.h"
 
-FENESTRA_FUZZ(Picture, input) {
+FENESTRA_FUZZ(Image, input) {
   using namespace fenestra;
   const std::string name =
       fuzzing::chooseName(input, std::array{"p.exr", "p.png", "p.tif", "p.nrrd"});

@@ -68,7 +68,7 @@ void renderRequest(const RenderRequest& request) {
 
 } // namespace
 
-FENESTRA_FUZZ(WholeRequest, input) {
+FENESTRA_FUZZ(CompleteRequest, input) {
   if (input.empty())
     return;
   fuzzing::writeSceneFixtures();
