@@ -10,7 +10,7 @@ namespace fenestra {
 /// Removes the path from the input registry, so that tests may overwrite files that they have read.
 inline void forgetIfRead(const std::filesystem::path& path) {
   if (const auto file = fileId(path))
-    forgetInput(*file);
+    unregisterInput(*file);
 }
 
 inline void writeFile(const std::filesystem::path& path, std::string_view content) {

@@ -180,7 +180,7 @@ HWY_INLINE Float toFloat(Int x) {
   return hn::ConvertTo(floats, x.v);
 }
 /// Converts integers from 0 to 2^23 - 1.
-HWY_INLINE Int wholeToInt(Float x) {
+HWY_INLINE Int nonNegativeToInt(Float x) {
   constexpr float shift = 0x1p23F; // moves the number to the mantissa's lowest bits
   return Int(hn::BitCast(ints, (x + shift).v)) & 0x7fffff;
 }

@@ -44,7 +44,7 @@ inline PixelWords toWords(const PixelSums& pixel) {
   return words;
 }
 
-inline void setWords(const PixelWords& words, PixelSums& pixel) {
+inline void fromWords(const PixelWords& words, PixelSums& pixel) {
   std::size_t i = 0;
   forEachNumber(
       pixel, [&]<typename Number>(Number& number) { number = std::bit_cast<Number>(words[i++]); });

@@ -152,7 +152,7 @@ std::optional<std::filesystem::path> findInput(const FileId& file) {
   return found == registry().inputs.end() ? std::nullopt : std::optional(found->second);
 }
 
-void forgetInput(const FileId& file) {
+void unregisterInput(const FileId& file) {
   const std::lock_guard lock(registry().mutex);
   registry().inputs.erase(file);
 }

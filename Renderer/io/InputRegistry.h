@@ -59,7 +59,7 @@ std::optional<std::filesystem::path> findInput(const FileId& file);
 
 /// Removes a file from the registry: one that this process has just created (an input that had its
 /// inode number is gone), or that is read only to be written again.
-void forgetInput(const FileId& file);
+void unregisterInput(const FileId& file);
 
 /// Registers the result at `path`: requireFile refuses that file until unregisterResult.
 void registerResult(const std::filesystem::path& path);

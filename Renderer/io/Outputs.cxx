@@ -207,10 +207,10 @@ void Outputs::checkInputs() const {
     requireNotInput(path, result->id());
 }
 
-void Outputs::forgetInputs() const {
+void Outputs::unregisterInputs() const {
   for (const auto& [path, result] : m_results)
     if (const auto file = result->id())
-      forgetInput(*file);
+      unregisterInput(*file);
 }
 
 void Outputs::write(const fs::path& path, std::string_view content) {

@@ -56,7 +56,7 @@ public:
   /// (usage).
   void checkInputs() const;
   /// Removes the results from the input registry, after a request that reads a result was refused.
-  void forgetInputs() const;
+  void unregisterInputs() const;
 
   /// Writes the complete content of a declared result to the disk, not yet in place. Callable from
   /// any thread. Throws Error (output), also if the disk is full.

@@ -46,7 +46,7 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(tar
   if (!m_file.isOpen())
     throw writeError(m_target, errno);
   if (const auto file = fileId(*m_file)) // inode numbers are reused; birth times may be unknown
-    forgetInput(*file);
+    unregisterInput(*file);
 }
 
 /// Creates the file, then locks it. Creates another if a later run has removed it in between as

@@ -164,7 +164,7 @@ Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given, Warn war
     if (const Shard& here = job.options.settings.shard; film.shard() != here)
       throw mismatchError(
           concat("--shard was ", formatShard(film.shard()), ", is ", formatShard(here)));
-    forgetInput(*fileId(m_path)); // since it is also an output
+    unregisterInput(*fileId(m_path)); // since it is also an output
   }
   m_outputs.add(m_path);
 }

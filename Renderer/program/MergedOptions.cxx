@@ -69,10 +69,10 @@ OrganPreset choosePreset(const OptionValues& given, const Input& input,
   std::vector<OrganPreset> presets;
   for (const std::string& own : listBuiltinPresets("presets"))
     presets.push_back(findOrganPreset(own));
-  return findMatchingPreset(presets, selectFocus(given, names->segments), names->source,
-                            [&](Modality modality) {
-                              return canSuit(modality, input.volume(given.text("volume")).volume);
-                            });
+  return findMatchingPreset(
+      presets, selectFocus(given, names->segments), names->source, [&](Modality modality) {
+        return isPlausibleModality(modality, input.volume(given.text("volume")).volume);
+      });
 }
 
 void addFocus(const OrganPreset& preset, const SegmentNames& names, OptionValues& values) {

@@ -119,7 +119,7 @@ void RowManifest::read(bool restart) {
     return;
   }
   m_manifest.readRequest(maxRowFiles);
-  forgetInput(*there); // since the manifest is also an output
+  unregisterInput(*there); // since the manifest is also an output
   m_manifest.addInputs(m_manifest.recordedInputs());
   m_manifest.readItems(
       1, [this](int) { return files(); }, checkedOutcome);

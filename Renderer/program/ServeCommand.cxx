@@ -57,7 +57,7 @@ private:
       m_isComplete = false;
       return true;
     } catch (const Error& error) {
-      m_outputs.forgetInputs();
+      m_outputs.unregisterInputs();
       if (changes.size() == 1)
         writeErrorEvent(changes.front().id, error.what());
     }

@@ -52,7 +52,7 @@ TurntableManifest::TurntableManifest(const TurntableOptions& options, const Opti
   else if (!options.restart)
     rejectUnknownFrames();
   if (there)
-    forgetInput(*there); // since the manifest is also an output
+    unregisterInput(*there); // since the manifest is also an output
 }
 
 int TurntableManifest::maxFiles() const {

@@ -65,7 +65,7 @@ std::vector<int> readTiles(MessageReader& reader, Film& film) {
     PixelWords words = {};
     for (std::uint64_t& word : words)
       word = reader.word();
-    setWords(words, pixel);
+    fromWords(words, pixel);
   });
   return tiles;
 }

@@ -95,7 +95,7 @@ std::string encodeCheckpoint(const RenderResult& result, const Shard& shard,
 }
 
 CheckpointFile::CheckpointFile(const fs::path& path) : m_path(path) {
-  requireFile(path, "name a checkpoint file");
+  requireFile(path, "give a checkpoint file");
   std::ifstream file = open(0);
   std::string line(maxFirstLine, '\0');
   file.read(line.data(), static_cast<std::streamsize>(line.size()));
@@ -191,7 +191,7 @@ void CheckpointFile::readPixels(Film& film) const {
   PixelWords words = {};
   forEachPixel(film, m_shard, [&](int column, int row) {
     file.read(reinterpret_cast<char*>(words.data()), sizeof words);
-    setWords(words, film.at(column, row));
+    fromWords(words, film.at(column, row));
   });
   if (!file)
     throw makeDamageError();

@@ -87,7 +87,7 @@ std::string summary(const FocusContrast& contrast) {
   const std::string desaturated = contrast.saturation < 1.0 ? "; surroundings desaturated to " +
                                                                   toString(contrast.saturation, 3)
                                                             : "";
-  return concat(toString(contrast.contrast->deltaE[0], 3), " (color-blind ",
+  return concat("deltaE ", toString(contrast.contrast->deltaE[0], 3), " (color-blind ",
                 toString(contrast.contrast->colorBlind(), 3), desaturated, ")");
 }
 

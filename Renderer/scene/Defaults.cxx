@@ -114,10 +114,11 @@ double shiftIntoScan(const Domain& occupied, const Vec3& up, const Vec3& center,
 } // namespace
 
 std::optional<std::string> chooseTransferPreset(const Volume& volume) {
-  return canSuit(Modality::ct, volume) ? std::optional<std::string>("ct-soft") : std::nullopt;
+  return isPlausibleModality(Modality::ct, volume) ? std::optional<std::string>("ct-soft")
+                                                   : std::nullopt;
 }
 
-bool canSuit(Modality modality, const Volume& volume) {
+bool isPlausibleModality(Modality modality, const Volume& volume) {
   // The minimum is air, or padding below it (-2000, -8192 and -32768 occur); the maximum is bone.
   const bool hounsfield = volume.minimum <= -500.0 && volume.maximum >= 200.0;
   return hounsfield == (modality == Modality::ct);
@@ -134,7 +135,7 @@ std::array<double, 2> findRobustRange(const Volume& volume) {
 }
 
 std::optional<double> findAirThreshold(const Volume& volume) {
-  if (canSuit(Modality::ct, volume))
+  if (isPlausibleModality(Modality::ct, volume))
     return -300.0;
   const std::vector<double> values = sampleValues(volume);
   if (10 * std::ranges::count(values, volume.minimum) >= std::ssize(values))

@@ -17,7 +17,7 @@ std::optional<std::string> chooseTransferPreset(const Volume& volume);
 
 /// True if a transfer function for `modality` is plausible for the volume: CT presets require a
 /// volume in Hounsfield units, all other modalities require a volume that is not.
-bool canSuit(Modality modality, const Volume& volume);
+bool isPlausibleModality(Modality modality, const Volume& volume);
 
 /// Robust scalar range: percentiles 0.5 and 99.5, low < high. Constant volume: low = high.
 std::array<double, 2> findRobustRange(const Volume& volume);

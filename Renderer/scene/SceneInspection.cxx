@@ -220,7 +220,7 @@ private:
   }
 
   Json viewJson(const MrmlNode& node) const {
-    return nodeJson(node, {{"layout", nullIfEmpty(layoutName(node))},
+    return nodeJson(node, {{"layout", nullIfEmpty(findLayoutName(node))},
                            {"technique", nullIfEmpty(node.text("raycastTechnique"))},
                            {"background", backgroundColors(node)}});
   }
@@ -230,7 +230,7 @@ private:
   }
 
   Json cameraJson(const MrmlNode& node) {
-    Json json = nodeJson(node, {{"layout", nullIfEmpty(layoutName(node))}});
+    Json json = nodeJson(node, {{"layout", nullIfEmpty(findLayoutName(node))}});
     if (!isSkipped("cameras", json))
       if (const auto pose = readCamera(node, json["problem"]))
         addPose(*pose, json);

@@ -93,11 +93,12 @@ TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>&
                               const Handle<SceneTransfer>& scene,
                               const std::optional<Modality>& modality) {
   std::vector<std::string> warnings;
-  if (named && !modality && named->source.starts_with("ct-") && !canSuit(Modality::ct, volume))
+  if (named && !modality && named->source.starts_with("ct-") &&
+      !isPlausibleModality(Modality::ct, volume))
     warnings.push_back("the transfer function " + named->source +
                        " is for CT, but this volume does not seem to be CT; move it with --shift, "
                        "or choose another with --transfer");
-  if (named && (!modality || canSuit(*modality, volume)))
+  if (named && (!modality || isPlausibleModality(*modality, volume)))
     return {fitToVolume(named->transfer, volume), named->source, warnings};
   if (named)
     warnings.push_back(concat(

@@ -311,12 +311,13 @@ std::string summary(const TintContrast& chosen) {
   };
   add("context chroma x ", &ColorAdjustment::contextSaturation);
   add("context lightness blended by ", &ColorAdjustment::contextLightness);
-  add("focus lightness + ", &ColorAdjustment::focusLightness);
+  add(adjustment.focusLightness < 0.0 ? "focus lightness " : "focus lightness +",
+      &ColorAdjustment::focusLightness);
   add("focus chroma x ", &ColorAdjustment::focusChroma);
   add(concat("focus blended with ", accentColors[adjustment.accent].name, " by "),
       &ColorAdjustment::focusAccent);
-  return concat(toString(contrast.deltaE[0], 3), " between ", sanitize(chosen.segment), " and ",
-                sanitize(chosen.neighbor), " (", join(parts, ", "), ")");
+  return concat("deltaE ", toString(contrast.deltaE[0], 3), " between ", sanitize(chosen.segment),
+                " and ", sanitize(chosen.neighbor), " (", join(parts, ", "), ")");
 }
 
 Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustment& adjustment,

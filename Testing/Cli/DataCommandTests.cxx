@@ -88,6 +88,13 @@ const std::vector<Expectation>& expectations() {
        "@/slicer_scenes/slicerrt_scenes/EclipseProstate_Structures_ColorTable.ctbl",
        "has an unknown extension"},
       {"torso_pet_ccth_a01/pet_suv.nii.gz", "@/torso_pet_ccth_a01/pet_suv.nii.gz"},
+      {"aorta_dissection_totalseg/ct_cropped.nii.gz aorta_dissection_totalseg/labels.nii.gz "
+       "aorta_dissection_totalseg/labels.ctbl",
+       "@/aorta_dissection_totalseg/ct_cropped.nii.gz --segmentation "
+       "@/aorta_dissection_totalseg/labels.nii.gz --labels "
+       "@/aorta_dissection_totalseg/labels.ctbl --focus aorta_true_lumen"},
+      // Inputs of public bug reports. Most are not supported yet; each README states its result.
+      {"field/*", "@/field/ct.nii.gz --segmentation @/field/labels.nii.gz --focus 1"},
       {"head_stroke/stroke_T1.nii.gz", "@/head_stroke/stroke_T1.nii.gz"},
       {"head_stroke/stroke_T2.nii.gz", "@/head_stroke/stroke_T2.nii.gz"},
       {"head_stroke/stroke_FLAIR.nii.gz", "@/head_stroke/stroke_FLAIR.nii.gz"},

@@ -25,7 +25,8 @@ TEST_F(InspectCommand, ReportsTheErrorOfARender) {
   for (const Case& c : std::vector<Case>{
            {"no volume", segmentationNode, "has no scalar volume"},
            {"technique",
-            volumeNode + settingNodes + R"(<View id="view1" name="V" layoutName="1" active="true"
+            volumeNode + settingNodes +
+                R"(<View id="view1" name="V" layoutName="1" active="true"
               raycastTechnique="MaximumIntensityProjection"/>)",
             "a maximum intensity projection"},
            {"missing file",

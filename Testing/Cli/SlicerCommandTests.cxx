@@ -174,7 +174,7 @@ TEST_F(SlicerCommand, XmlDescribesEveryOptionOfTheHelp) {
 }
 
 TEST_F(SlicerCommand, ReadmeTableEqualsTheXml) {
-  std::string table = "| flag | what it does | in Slicer's panel |\n|---|---|---|\n";
+  std::string table = "| option | what it does | default in Slicer's panel |\n|---|---|---|\n";
   const pugi::xml_document document = description();
   for (const pugi::xpath_node& option : document.select_nodes("//parameters/*[longflag]")) {
     const pugi::xml_node parameter = option.node();
@@ -184,8 +184,8 @@ TEST_F(SlicerCommand, ReadmeTableEqualsTheXml) {
              (start.empty() ? "" : "`" + start + "`") + " |\n";
   }
   const std::string readme = readBytes(FENESTRA_README);
-  const std::size_t begin = readme.find("<!-- flags: ");
-  const std::size_t end = readme.find("<!-- end of flags -->");
+  const std::size_t begin = readme.find("<!-- options: ");
+  const std::size_t end = readme.find("<!-- end of options -->");
   ASSERT_TRUE(begin < end && end != std::string::npos);
   const std::size_t after = readme.find('\n', begin) + 1;
   EXPECT_EQ(readme.substr(after, end - after), table) << "Renderer/program/README.md should have:\n"

@@ -136,11 +136,11 @@ TEST(OrganPresets, ScalarRangeDistinguishesCt) {
     return testing::makeVolume<std::int16_t>(
         grid, [&](const Vec3& i) { return low + (high - low) * i.x() / 9.0; });
   };
-  EXPECT_TRUE(canSuit(Modality::ct, volume(-1000, 1500)));
-  EXPECT_FALSE(canSuit(Modality::ct, volume(0, 255)));
-  EXPECT_FALSE(canSuit(Modality::mr, volume(-1000, 1500)));
-  EXPECT_TRUE(canSuit(Modality::mr, volume(0, 255)));
-  EXPECT_TRUE(canSuit(Modality::us, volume(0, 255)));
+  EXPECT_TRUE(isPlausibleModality(Modality::ct, volume(-1000, 1500)));
+  EXPECT_FALSE(isPlausibleModality(Modality::ct, volume(0, 255)));
+  EXPECT_FALSE(isPlausibleModality(Modality::mr, volume(-1000, 1500)));
+  EXPECT_TRUE(isPlausibleModality(Modality::mr, volume(0, 255)));
+  EXPECT_TRUE(isPlausibleModality(Modality::us, volume(0, 255)));
 }
 
 /// Each value from 0 to 99 999 occurs once, so that the percentiles are known.

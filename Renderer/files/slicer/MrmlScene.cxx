@@ -80,7 +80,7 @@ bool isVisible(const MrmlNode& display) {
   return display.boolean("visibility", true) && display.boolean("visibility3D", true);
 }
 
-std::string layoutName(const MrmlNode& viewOrCamera) {
+std::string findLayoutName(const MrmlNode& viewOrCamera) {
   return viewOrCamera.text(viewOrCamera.find("layoutName") ? "layoutName" : "singletonTag");
 }
 

@@ -42,7 +42,7 @@ bool isVolumeRendering(const MrmlNode& node);
 bool isVisible(const MrmlNode& display);
 
 /// Layout name that pairs a view with its camera; older scenes use singletonTag.
-std::string layoutName(const MrmlNode& viewOrCamera);
+std::string findLayoutName(const MrmlNode& viewOrCamera);
 
 /// Files of a node's storage node, fileName first; empty: no storage node.
 std::vector<std::string> listStorageFiles(const MrmlScene& scene, const MrmlNode& node);

@@ -149,10 +149,10 @@ const MrmlNode* chooseView(const MrmlDocument& document, const MrmlNode* renderi
 const MrmlNode* findCamera(const MrmlDocument& document, const MrmlNode* view) {
   const Nodes cameras = document.findByTag("Camera");
   if (view) {
-    const std::string layout = layoutName(*view);
+    const std::string layout = findLayoutName(*view);
     for (const MrmlNode* camera : cameras) {
       const std::string active = camera->text("activetag");
-      if ((!layout.empty() && layoutName(*camera) == layout) ||
+      if ((!layout.empty() && findLayoutName(*camera) == layout) ||
           (!active.empty() && active == view->id))
         return camera;
     }

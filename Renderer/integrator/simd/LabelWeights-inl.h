@@ -66,7 +66,7 @@ private:
     const Float3 inside = cell - float{LabelWeights::brickEdge} * brick;
     const Float voxel = fma(fma(inside.z, float{edge}, inside.y), float{edge}, inside.x);
     return {voxelOffset(axes, brick.x, brick.y, brick.z),
-            wholeToInt(voxel),
+            nonNegativeToInt(voxel),
             {x.fraction, y.fraction, z.fraction}};
   }
 

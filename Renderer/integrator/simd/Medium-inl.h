@@ -13,7 +13,8 @@ HWY_INLINE AxisPosition locateOnAxis(const SimdAxis& a, Float x) {
 }
 /// Offset of a voxel or brick in its array.
 HWY_INLINE Int voxelOffset(const SimdAxes& axes, Float x, Float y, Float z) {
-  return wholeToInt(x) + wholeToInt(y) * axes[1].stride + wholeToInt(z) * axes[2].stride;
+  return nonNegativeToInt(x) + nonNegativeToInt(y) * axes[1].stride +
+         nonNegativeToInt(z) * axes[2].stride;
 }
 
 /// Each lane's voxel at `first` + `offset`, and its neighbor along x.
@@ -101,7 +102,7 @@ HWY_INLINE LineValue evalLines(const SimdLines& table, Int first, Float s) {
   const Float place = max(min((s - table.start) * table.binsPerUnit, table.last), 0.0F);
   const Float line = floor(place);
   const auto [value, rise] =
-      loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(first + wholeToInt(line))));
+      loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(first + nonNegativeToInt(line))));
   return {clampZero(fma(place - line, rise, value)), ~(rise == rise)};
 }
 
@@ -123,7 +124,7 @@ HWY_INLINE LaneCells loadCells(const SimdMedium& medium, Float x, Float y, Float
   const Float place =
       fma(z, medium.axes[2].cellStride, fma(y, medium.axes[1].cellStride, x + medium.firstCell));
   // This order of min and max maps NaN to 0.
-  const Int index = wholeToInt(max(min(place, medium.lastCell), 0.0F));
+  const Int index = nonNegativeToInt(max(min(place, medium.lastCell), 0.0F));
   const Int code = gather(medium.cells.codes.data(), index);
   return {bitsAsFloat(code & SimdMajorants::majorantBits),
           toFloat(code & SimdMajorants::radiusBits), code < 0};
