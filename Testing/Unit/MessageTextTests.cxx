@@ -1,7 +1,7 @@
 // Text from files as it appears in messages.
 
-#include "io/MessageText.h"
 #include "base/Text.h"
+#include "io/MessageText.h"
 
 #include <gtest/gtest.h>
 
