@@ -112,14 +112,14 @@ void qSlicerFenestraModuleWidget::connectSession() {
     updateButtons();
     preview();
   });
-  connect(m_session, &qSlicerFenestraSession::learned, this,
+  connect(m_session, &qSlicerFenestraSession::capabilitiesReceived, this,
           [this](const qFenestraCapabilities& capabilities) {
             m_panel->setCapabilities(capabilities);
             m_settings->use(m_settings->node());
           });
-  connect(m_session, &qSlicerFenestraSession::materialsTold, m_panel->materials,
+  connect(m_session, &qSlicerFenestraSession::materialsReceived, m_panel->materials,
           &qSlicerFenestraMaterials::setKnownMaterials);
-  connect(m_session, &qSlicerFenestraSession::previewed, this,
+  connect(m_session, &qSlicerFenestraSession::previewReceived, this,
           &qSlicerFenestraModuleWidget::showPreviewImage);
   connect(m_session, &qSlicerFenestraSession::previewRefused, m_panel->previewState,
           &QLabel::setText);
@@ -129,7 +129,7 @@ void qSlicerFenestraModuleWidget::connectSession() {
     setStatus(tr("Rendering..."));
     updateButtons();
   });
-  connect(m_session, &qSlicerFenestraSession::reached, this,
+  connect(m_session, &qSlicerFenestraSession::statusChanged, this,
           [this](const QString& text) { m_samplesAndNoise = text; });
   connect(m_session, &qSlicerFenestraSession::progressed, this,
           [this](Node*, double fraction, double seconds) { onProgress(fraction, seconds); });

@@ -86,12 +86,12 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
                     static_cast<double>(m_renderTime.elapsed()) / 1000.0);
   });
   connect(&m_queue, &qFenestraQueue::commented, this,
-          [this](int, const QString& text) { emit reached(text); });
+          [this](int, const QString& text) { emit statusChanged(text); });
   connect(&m_queue, &qFenestraQueue::ended, this, &qSlicerFenestraSession::finishRender);
-  connect(&m_capabilityQuery, &qFenestraCapabilityQuery::told, this,
-          &qSlicerFenestraSession::learned);
-  connect(&m_materials, &qFenestraMaterialsQuery::told, this,
-          &qSlicerFenestraSession::materialsTold);
+  connect(&m_capabilityQuery, &qFenestraCapabilityQuery::received, this,
+          &qSlicerFenestraSession::capabilitiesReceived);
+  connect(&m_materials, &qFenestraMaterialsQuery::received, this,
+          &qSlicerFenestraSession::materialsReceived);
   connect(this, &qSlicerFenestraSession::ended, this, [](Node*, const qFenestraOutcome& outcome) {
     if (outcome.kind == Ended::failed)
       qCritical().noquote() << "Fenestra:" << outcome.message << outcome.details;

@@ -59,9 +59,9 @@ public:
   bool isRendering() const { return !m_renders.isEmpty(); }
   int waitingCount() const { return isRendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
 
-  /// Queries the renderer's capabilities; `learned` reports them.
+  /// Queries the renderer's capabilities; `capabilitiesReceived` reports them.
   void queryCapabilities();
-  /// Queries the materials that the renderer chooses for the segments; `materialsTold` reports
+  /// Queries the materials that the renderer chooses for the segments; `materialsReceived` reports
   /// them. Unchanged segments are not queried again.
   void queryMaterials(const std::vector<SlicerExport::Segment>& segments);
   /// Previews the settings from now on; null: ends the preview.
@@ -79,16 +79,16 @@ public slots:
   void refresh();
 
 signals:
-  void learned(const qFenestraCapabilities& capabilities);
-  void materialsTold(const qFenestraMaterials& materials);
-  void previewed(const QImage& picture, const qFenestraPreviewImage& what);
+  void capabilitiesReceived(const qFenestraCapabilities& capabilities);
+  void materialsReceived(const qFenestraMaterials& materials);
+  void previewReceived(const QImage& picture, const qFenestraPreviewImage& what);
   /// `message`: a sentence for the user. The last preview stays visible.
   void previewRefused(const QString& message);
   void started(vtkMRMLFenestraRenderNode* render);
   /// `fraction`: finished fraction, 0 to 1; `seconds`: elapsed time.
   void progressed(vtkMRMLFenestraRenderNode* render, double fraction, double seconds);
   /// Samples and noise of the current render, as text.
-  void reached(const QString& text);
+  void statusChanged(const QString& text);
   /// The process of the current render has ended; its result is not read yet.
   void renderStopped();
   /// The render's result, if any, is in the scene.

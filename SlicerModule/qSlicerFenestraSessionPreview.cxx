@@ -138,5 +138,5 @@ void qSlicerFenestraSession::sendToPreview(const QJsonObject& flags) {
 void qSlicerFenestraSession::showPreview(const qFenestraPreviewImage& picture) {
   const QImage image(m_preview.folder() + "/" + picture.files.value(0));
   if (!image.isNull())
-    emit previewed(image, picture);
+    emit previewReceived(image, picture);
 }

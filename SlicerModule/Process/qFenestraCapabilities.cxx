@@ -35,7 +35,7 @@ qFenestraCapabilities::parseFlags(const QString& description) {
 }
 
 qFenestraCapabilityQuery::qFenestraCapabilityQuery(QObject* parent) : QObject(parent) {
-  connect(&m_child, &qFenestraProgram::said, this,
+  connect(&m_child, &qFenestraProgram::lineReceived, this,
           [this](const QString& line) { m_output += line + '\n'; });
   connect(&m_child, &qFenestraProgram::ended, this, &qFenestraCapabilityQuery::onEnded);
 }
@@ -57,5 +57,5 @@ void qFenestraCapabilityQuery::onEnded(const qFenestraOutcome& outcome) {
   // Old renderers take "turntable" for a file name and print the help of `fenestra render`.
   if (m_flagsKnown && isDone && m_output.contains("--frames"))
     m_capabilities.turntable = m_output;
-  emit told(m_capabilities);
+  emit received(m_capabilities);
 }

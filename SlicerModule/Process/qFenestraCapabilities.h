@@ -23,7 +23,7 @@ struct qFenestraCapabilities {
   static QMap<QString, Flag> parseFlags(const QString& description);
 };
 
-/// Queries the renderer once. After a failure, `told` is emitted without capabilities.
+/// Queries the renderer once. After a failure, `received` is emitted without capabilities.
 class qFenestraCapabilityQuery : public QObject {
   Q_OBJECT
 
@@ -32,7 +32,7 @@ public:
   void request(const QString& program);
 
 signals:
-  void told(const qFenestraCapabilities& capabilities);
+  void received(const qFenestraCapabilities& capabilities);
 
 private:
   void onEnded(const qFenestraOutcome& outcome);

@@ -41,7 +41,7 @@ qFenestraMaterials qFenestraMaterials::parseReport(const QByteArray& report) {
 }
 
 qFenestraMaterialsQuery::qFenestraMaterialsQuery(QObject* parent) : QObject(parent) {
-  connect(&m_child, &qFenestraProgram::said, this,
+  connect(&m_child, &qFenestraProgram::lineReceived, this,
           [this](const QString& line) { m_output += line.toUtf8() + '\n'; });
   connect(&m_child, &qFenestraProgram::ended, this, &qFenestraMaterialsQuery::onEnded);
 }
@@ -62,7 +62,7 @@ void qFenestraMaterialsQuery::start(const Query& query) {
     SlicerExport::writeSegmentNames(query.segments,
                                     std::filesystem::path(query.folder.toStdString()) / name);
   } catch (const SlicerExport::FileError&) { // a render reports the reason
-    emit told({});
+    emit received({});
     return;
   }
   m_running = true;
@@ -76,5 +76,5 @@ void qFenestraMaterialsQuery::onEnded(const qFenestraOutcome& outcome) {
     return start(*next);
   }
   const bool isDone = outcome.kind == qFenestraOutcome::Kind::done;
-  emit told(isDone ? qFenestraMaterials::parseReport(m_output) : qFenestraMaterials());
+  emit received(isDone ? qFenestraMaterials::parseReport(m_output) : qFenestraMaterials());
 }

@@ -25,7 +25,7 @@ struct qFenestraMaterials {
   static qFenestraMaterials parseReport(const QByteArray& report);
 };
 
-/// Queries the renderer. After a failure, `told` is emitted without materials.
+/// Queries the renderer. After a failure, `received` is emitted without materials.
 class qFenestraMaterialsQuery : public QObject {
   Q_OBJECT
 
@@ -37,7 +37,7 @@ public:
                const QString& folder);
 
 signals:
-  void told(const qFenestraMaterials& materials);
+  void received(const qFenestraMaterials& materials);
 
 private:
   struct Query {

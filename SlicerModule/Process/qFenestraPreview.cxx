@@ -17,7 +17,7 @@ void qFenestraPreview::start(const QString& program, const QStringList& argument
   stop();
   m_lastId = 0;
   m_child = new qFenestraProgram(this);
-  connect(m_child, &qFenestraProgram::said, this, &qFenestraPreview::readEvent);
+  connect(m_child, &qFenestraProgram::lineReceived, this, &qFenestraPreview::readEvent);
   connect(m_child, &qFenestraProgram::ended, this, &qFenestraPreview::ended);
   connect(m_child, &QObject::destroyed, [files] {}); // the connection keeps the files alive
   m_child->run(program, QStringList{"serve"} + arguments, folder);

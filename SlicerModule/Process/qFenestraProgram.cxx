@@ -98,7 +98,7 @@ QProcessEnvironment qFenestraProgram::removeLibraryPaths(QProcessEnvironment env
 void qFenestraProgram::readLines() {
   setReadChannel(QProcess::StandardOutput);
   while (canReadLine())
-    emit said(QString::fromUtf8(readLine()).trimmed());
+    emit lineReceived(QString::fromUtf8(readLine()).trimmed());
 }
 
 void qFenestraProgram::finish(const qFenestraOutcome& outcome) {

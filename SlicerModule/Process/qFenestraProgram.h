@@ -34,7 +34,7 @@ public:
 
 signals:
   /// One line of the child's standard output, without its line end.
-  void said(const QString& line);
+  void lineReceived(const QString& line);
   void ended(const qFenestraOutcome& outcome);
 
 protected:

@@ -17,7 +17,7 @@ QString extractTag(const QString& line, const char* tag) {
 
 qFenestraQueue::qFenestraQueue(const QString& program, QObject* parent)
     : QObject(parent), m_program(program) {
-  connect(&m_child, &qFenestraProgram::said, this, [this](const QString& line) {
+  connect(&m_child, &qFenestraProgram::lineReceived, this, [this](const QString& line) {
     const double fraction = parseProgress(line);
     if (fraction >= 0.0)
       emit progressed(m_current, fraction);

@@ -34,7 +34,7 @@ public:
 signals:
   void started(int id);
   void progressed(int id, double fraction);
-  void commented(int id, const QString& reached);
+  void commented(int id, const QString& status);
   void ended(int id, const qFenestraOutcome& outcome);
 
 private:

@@ -61,7 +61,7 @@ qFenestraMaterials queryMaterials(const std::vector<SlicerExport::Segment>& all,
                                   const TemporaryFolder& folder) {
   qFenestraMaterialsQuery query;
   std::vector<qFenestraMaterials> results;
-  QObject::connect(&query, &qFenestraMaterialsQuery::told,
+  QObject::connect(&query, &qFenestraMaterialsQuery::received,
                    [&](const qFenestraMaterials& materials) { results.push_back(materials); });
   query.request(program, {}, QString::fromStdString(folder.path().string()));
   query.request(program, all, QString::fromStdString(folder.path().string()));

@@ -175,7 +175,7 @@ struct StoppedChild {
                      [this](const qFenestraOutcome& ended) { outcomes.push_back(ended); });
     bool ready = false;
     const auto connection =
-        QObject::connect(&child, &qFenestraProgram::said, [&] { ready = true; });
+        QObject::connect(&child, &qFenestraProgram::lineReceived, [&] { ready = true; });
     child.run(
         "/bin/sh",
         {"-c", QString("trap '%1' TERM; echo ready; while :; do sleep 0.02; done").arg(onStop)},
@@ -243,7 +243,7 @@ TEST_F(SlicerProcess, ProgressIsReadFromValidTagsOnly) {
 TEST_F(SlicerProcess, CapabilitiesListOptionsAndNamesOfTheRenderer) {
   qFenestraCapabilityQuery query;
   std::vector<qFenestraCapabilities> results;
-  QObject::connect(&query, &qFenestraCapabilityQuery::told,
+  QObject::connect(&query, &qFenestraCapabilityQuery::received,
                    [&](const qFenestraCapabilities& one) { results.push_back(one); });
   query.request(program);
   ASSERT_TRUE(waitFor([&] { return !results.empty(); }));
@@ -256,7 +256,7 @@ TEST_F(SlicerProcess, CapabilitiesListOptionsAndNamesOfTheRenderer) {
   EXPECT_EQ(results[0].hasTurntable(), results[0].turntable.contains("--frames"));
 
   qFenestraCapabilityQuery missing;
-  QObject::connect(&missing, &qFenestraCapabilityQuery::told,
+  QObject::connect(&missing, &qFenestraCapabilityQuery::received,
                    [&](const qFenestraCapabilities& one) { results.push_back(one); });
   missing.request("/nowhere/fenestra");
   ASSERT_TRUE(waitFor([&] { return results.size() == 2; }));

@@ -410,12 +410,12 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   const QScopedPointer<qSlicerFenestraModuleWidget> owner(widget);
   const Panel panel{widget, vtkSlicerFenestraLogic::SafeDownCast(module.logic())};
   qFenestraCapabilities capabilities;
-  bool learned = false;
-  QObject::connect(widget->session(), &qSlicerFenestraSession::learned,
-                   [&](const qFenestraCapabilities& told) { capabilities = told, learned = true; });
+  bool hasAnswer = false;
+  QObject::connect(widget->session(), &qSlicerFenestraSession::capabilitiesReceived,
+                   [&](const auto& answer) { capabilities = answer, hasAnswer = true; });
   widget->enter();
   CHECK_EXIT_SUCCESS(checkEmpty(panel));
-  CHECK_BOOL(waitFor([&] { return learned; }), true);
+  CHECK_BOOL(waitFor([&] { return hasAnswer; }), true);
   CHECK_BOOL(capabilities.flags["clip"].choices.contains("ghost"), true);
   widget->exit();
 

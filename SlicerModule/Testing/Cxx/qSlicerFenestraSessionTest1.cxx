@@ -40,7 +40,7 @@ struct SignalRecorder {
                        render = node;
                        last = outcome;
                      });
-    QObject::connect(&session, &qSlicerFenestraSession::previewed, &session,
+    QObject::connect(&session, &qSlicerFenestraSession::previewReceived, &session,
                      [this](const QImage& picture, const qFenestraPreviewImage&) {
                        ++previews;
                        preview = picture;

@@ -58,7 +58,7 @@ bool qSlicerFenestraUser::openModule() {
   m_panel = m_window->findChild<qSlicerFenestraModuleWidget*>();
   if (!m_panel)
     return false;
-  QObject::connect(m_panel->session(), &qSlicerFenestraSession::previewed, m_panel,
+  QObject::connect(m_panel->session(), &qSlicerFenestraSession::previewReceived, m_panel,
                    [this] { ++m_previews; });
   QObject::connect(m_panel->session(), &qSlicerFenestraSession::ended, m_panel,
                    [this] { ++m_ended; });
