@@ -3,7 +3,6 @@
 
 #include "FenestraPanel.h"
 #include "FenestraTesting.h"
-
 #include "qSlicerFenestraModule.h"
 
 #include <ctkSliderWidget.h>
