@@ -37,6 +37,7 @@ public:
   void stepBy(int steps) override {
     const double from = value() < 0.0 ? -singleStep() : value();
     const double to = from + steps * singleStep();
+    // A single step down stops at 0 before it reaches "auto".
     setValue(to >= 0.0 ? to : from > 0.0 && steps == -1 ? 0.0 : automatic);
   }
 

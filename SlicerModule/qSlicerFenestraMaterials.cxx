@@ -188,6 +188,7 @@ SlicerExport::MaterialChange qSlicerFenestraMaterials::findChange(const QString&
 qFenestraMaterial qSlicerFenestraMaterials::findAutomatic(const QString& segment) const {
   const qFenestraMaterial one = m_known.bySegment.value(segment);
   const QString word = base();
+  // Only the source "library" uses palette colors.
   const bool isUnknown = word != library && one.why == "by palette";
   if (word == none || isUnknown)
     return {{}, {}, tr("the volume's own colors"), true};

@@ -53,7 +53,7 @@ QString formatNumber(double value, Unit unit) {
   return value < 9.95 ? QString::number(value, 'g', 2) : QString::number(value, 'f', 0);
 }
 
-QString unitSuffix(Unit unit) {
+QString toSuffix(Unit unit) {
   switch (unit) {
   case Unit::fraction:
     return QObject::tr(" %");
@@ -70,7 +70,7 @@ QString unitSuffix(Unit unit) {
 /// Text of a number, or of a distribution: mean, 95th percentile and maximum.
 QString toUserText(const QJsonValue& value, Unit unit) {
   if (value.isDouble())
-    return formatNumber(value.toDouble(), unit) + unitSuffix(unit);
+    return formatNumber(value.toDouble(), unit) + toSuffix(unit);
   const QJsonObject object = value.toObject();
   QStringList parts;
   for (const auto& [key, text] :
@@ -78,7 +78,7 @@ QString toUserText(const QJsonValue& value, Unit unit) {
         std::pair{"max", QObject::tr("at most %1")}})
     if (const QJsonValue part = object[QLatin1String(key)]; part.isDouble())
       parts << text.arg(formatNumber(part.toDouble(), unit));
-  return parts.isEmpty() ? QString() : parts.join(", ") + unitSuffix(unit);
+  return parts.isEmpty() ? QString() : parts.join(", ") + toSuffix(unit);
 }
 
 } // namespace

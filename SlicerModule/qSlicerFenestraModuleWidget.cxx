@@ -42,7 +42,7 @@ std::string findViewSize(double side) {
   const qSlicerApplication* application = qSlicerApplication::application();
   qSlicerLayoutManager* layout = application ? application->layoutManager() : nullptr;
   const QWidget* view = layout ? layout->threeDWidget(0) : nullptr;
-  if (!view || view->width() < 64 || view->height() < 64)
+  if (!view || view->width() < 64 || view->height() < 64) // hidden or collapsed
     return {};
   const double scale = side / std::sqrt(double(view->width()) * view->height());
   const auto scaled = [scale](int length) { return std::to_string(std::lround(scale * length)); };

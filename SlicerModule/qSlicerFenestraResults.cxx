@@ -28,7 +28,7 @@ QString formatStatistics(const QJsonObject& stats) {
              ? QString()
              : QObject::tr("%1 samples per pixel, noise %2, %3")
                    .arg(stats["samplesPerPixel"].toObject()["mean"].toDouble(), 0, 'f', 0)
-                   .arg(stats["noiseFiltered"].toDouble(stats["noise"].toDouble()), 0, 'g', 2)
+                   .arg(stats["noiseDenoised"].toDouble(stats["noise"].toDouble()), 0, 'g', 2)
                    .arg(qSlicerFenestraMeasures::formatDuration(
                        stats["seconds"].toObject()["total"].toDouble()));
 }

@@ -374,8 +374,8 @@ void qSlicerFenestraSettings::takePreset() {
 void qSlicerFenestraSettings::takeView(Flags& flags) {
   const std::string word = selectedData(m_panel->view);
   const bool byPreset = word == "preset";
-  const bool best = word == "auto" && flags["preset"].empty() && flags["focus"].empty(); // no focus
-  const std::string view = byPreset || best ? "" : word;
+  const bool lacksFocus = flags["preset"].empty() && flags["focus"].empty();
+  const std::string view = byPreset || (word == "auto" && lacksFocus) ? "" : word;
   m_node->SetNodeReferenceID(Node::ViewRole,
                              byPreset ? nullptr : getId(m_panel->view3D->currentNode()));
   const bool frozen = flags.count("position") > 0;

@@ -3,7 +3,7 @@
 namespace fenestra {
 
 void AliasTables::append(std::span<const double> cumulative) {
-  const std::uint64_t full = std::uint64_t{1} << (32 - bits);
+  const std::uint64_t full = std::uint64_t{1} << (32 - bits); // capacity of a slot
   std::vector<std::uint64_t> remaining(size(), 0); // probability per bin that has no slot yet
   std::vector<std::size_t> underfull, overfull; // bins with less than a full slot, and the others
   std::uint64_t previous = 0;

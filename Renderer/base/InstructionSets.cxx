@@ -9,8 +9,8 @@
 namespace fenestra {
 namespace {
 
-/// Bits of the instruction sets that both program and machine support, pinned or not; the lowest
-/// bit is the best set.
+/// Bits of the instruction sets that both program and machine support, before any choice by
+/// useInstructionSet(); the lowest bit is the best set.
 std::int64_t findSupportedSets() {
   static const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
   return supported;

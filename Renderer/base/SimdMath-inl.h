@@ -112,7 +112,7 @@ HWY_INLINE Float polynomial(Float x, float highest, std::initializer_list<float>
 /// logf).
 HWY_INLINE Float log(Float x) {
   const Int raw = bitsAsInt(x);
-  // sqrt(1/2): mantissas lie in [sqrt(1/2), sqrt(2)).
+  // 0x3f3504f3 is sqrt(1/2) as bits: mantissas lie in [sqrt(1/2), sqrt(2)).
   const Int power = shiftRight<23>(raw - 0x3f3504f3);
   const Float f = bitsAsFloat(raw - shiftLeft<23>(power)) - 1.0F;
   const Float e = toFloat(power);
@@ -120,7 +120,7 @@ HWY_INLINE Float log(Float x) {
       polynomial(f, 7.0376836292E-2F,
                  {-1.1514610310E-1F, 1.1676998740E-1F, -1.2420140846E-1F, 1.4249322787E-1F,
                   -1.6668057665E-1F, 2.0000714765E-1F, -2.4999993993E-1F, 3.3333331174E-1F});
-  const Float f2 = f * f;
+  const Float f2 = f * f; // below: log 2 = 0.693359375 - 2.12194440E-4
   const Float low = fnma(0.5F, f2, fma(e, -2.12194440E-4F, p * f * f2));
   return fma(e, 0.693359375F, f + low);
 }

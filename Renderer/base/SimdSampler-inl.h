@@ -26,7 +26,7 @@ HWY_INLINE SimdPrimarySamples generateSamples(UInt start, UInt key, UInt sample,
   using Stream = Sampler::Stream;
   constexpr int strataBits = Sampler::strataBits;
   const auto at = [&](UInt n) { return mixBits((start + n * Stream::step) ^ key); };
-  const UInt first = sample * Stream::wordsPerSample;
+  const UInt first = sample * Stream::wordsPerSample; // word of the stream
   const auto two = [&](std::uint32_t i) { return std::array{at(first + i), at(first + (i + 1))}; };
   SimdPrimarySamples numbers{two(0), two(2), two(4), two(6), two(8)};
   if (!isStratified)

@@ -55,6 +55,7 @@ std::array<double, 2> hueDifferenceAndMean(const AdjustedHue& x, const AdjustedH
 Rgb simulateVision(ColorVision vision, const Rgb& linear) {
   using Rows = std::array<Vec3, 3>;
   static const std::array<Rows, 3> matrices = {
+      // protan, deutan, tritan
       Rows{Vec3(0.152286, 1.052583, -0.204868), Vec3(0.114503, 0.786281, 0.099216),
            Vec3(-0.003882, -0.048116, 1.051998)},
       Rows{Vec3(0.367322, 0.860646, -0.227968), Vec3(0.280085, 0.672501, 0.047413),

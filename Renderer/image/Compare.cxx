@@ -6,7 +6,7 @@
 namespace fenestra {
 namespace {
 
-constexpr double fullColorZ = 5.0;
+constexpr double fullColorZ = 5.0; ///< |z| that a difference image shows in full color
 
 std::string formatSize(const Image& image) {
   return std::to_string(image.width) + "x" + std::to_string(image.height);

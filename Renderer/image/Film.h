@@ -25,8 +25,8 @@ struct HalfMeans {
   double evenAlpha, oddAlpha;
 };
 
-/// Running sums of one pixel, in double. Samples are added in the order of their indices, so that
-/// sums do not depend on passes or threads.
+/// Sums over the samples of one pixel, or means where stated, in double. Samples are added in the
+/// order of their indices, so that sums do not depend on passes or threads.
 ///
 /// Samples of the same block may be correlated, since they share strata; blocks are independent.
 /// The first `blockSize` samples of even index are a block, the next `blockSize` another, and

@@ -31,12 +31,12 @@ public:
 
   FetusSubject() : LayeredSubject(0.0) {
     const Anatomy anatomy = loadAnatomy("fetus");
-    constexpr double skin = 2.2; // mm
+    constexpr double skinThickness = 2.2, skinEcho = 165.0; // mm; as insideEcho
     const auto face = addSegment("face", "Fetal face and hand", {0.93, 0.72, 0.58});
     for (const Solid part : {anatomy.at("head"), anatomy.at("hand")}) {
       addLayer(face, insideEcho, part.box,
-               [part](const Vec3& p) { return part.distance(p) + skin; });
-      addLayer(face, makeConstant(165.0), part.box, part.distance);
+               [part](const Vec3& p) { return part.distance(p) + skinThickness; });
+      addLayer(face, makeConstant(skinEcho), part.box, part.distance);
     }
     const Solid cord = anatomy.at("cord");
     addLayer(addSegment("cord", "Umbilical cord", {0.75, 0.55, 0.62}), makeConstant(130.0),

@@ -12,8 +12,10 @@ const Vec3 footFieldCenter{-2.0, 131.0, 64.0};   ///< world
 constexpr int footBoneThreshold = 200;           ///< HU
 constexpr double footSkinThickness = 1.6;        ///< mm
 constexpr double footNoise = 14.0;               ///< HU, standard deviation
+constexpr double footBoxMargin = 1.5;            ///< mm; noise moves surfaces out of their boxes
 
-double trabeculae(const Vec3& p) {
+/// HU relative to the mean.
+double trabecularTexture(const Vec3& p) {
   return 90.0 * valueNoise(p / 1.6, 270) + 60.0 * valueNoise(p / 4.0, 271);
 }
 
@@ -31,13 +33,13 @@ double footFasciaDepth(const Vec3& p) {
   return 2.8 + 3.2 * plantar + 4.5 * heel + 1.6 * leg + 0.4 * valueNoise(p / 14.0, 262);
 }
 
-double footTendonSignal(const Vec3& p) {
+double footTendonHu(const Vec3& p) {
   return 105.0 + 10.0 * valueNoise(p / 2.0, 273);
 }
-double footMuscleSignal(const Vec3& p) {
+double footMuscleHu(const Vec3& p) {
   return 55.0 + 12.0 * valueNoise(p.cwiseQuotient(Vec3{3.0, 9.0, 3.0}), 274);
 }
-double footFatSignal(const Vec3& p) {
+double footFatHu(const Vec3& p) {
   return -105.0 + 12.0 * valueNoise(p / 5.0, 275);
 }
 
@@ -70,15 +72,15 @@ VolumeProperty footProperty() {
 
 } // namespace
 
-double footCortexSignal(const FootSite& s) {
+double footCortexHu(const FootSite& s) {
   return std::lerp(820.0, 1450.0, s.shaft) + 90.0 * valueNoise(s.point / 3.0, 272);
 }
 
-double footMarrowSignal(const FootSite& s) {
-  return std::lerp(s.spongiosa + trabeculae(s.point), -40.0, s.shaft);
+double footMarrowHu(const FootSite& s) {
+  return std::lerp(s.cancellousBone + trabecularTexture(s.point), -40.0, s.shaft);
 }
 
-FootSubject::FootSubject() : LayeredSubject(1.5) {
+FootSubject::FootSubject() : LayeredSubject(footBoxMargin) {
   const Solid shape = m_anatomy.at("body");
   const auto sole = [](const Vec3& p) { return soleHeight(p) - p.z(); };
   // The web of the toes runs backward from the big toe to the little toe.
@@ -105,11 +107,11 @@ double FootSubject::outlineDistance(const Vec3& p) const {
 }
 
 double FootSubject::skinDistance(const Vec3& p, double nearestBone) const {
-  constexpr double overBone = 4.2, overTendon = 2.6, blend = 5.0;
-  double surface = smoothUnion(outlineDistance(p), nearestBone - overBone, blend);
+  constexpr double skinOverBone = 4.2, skinOverTendon = 2.6, blend = 5.0; // mm
+  double surface = smoothUnion(outlineDistance(p), nearestBone - skinOverBone, blend);
   for (const Solid& tendon : m_superficial)
-    if (contains(expandBox(tendon.box, overTendon + 2.0 * blend), p))
-      surface = smoothUnion(surface, tendon.distance(p) - overTendon, blend);
+    if (contains(expandBox(tendon.box, skinOverTendon + 2.0 * blend), p))
+      surface = smoothUnion(surface, tendon.distance(p) - skinOverTendon, blend);
   return surface;
 }
 
@@ -124,7 +126,7 @@ FootSite FootSubject::makeSite(const Vec3& p) const {
     if (i != s.nearest)
       s.second = std::min(s.second, s.bones[i]);
   s.shaft = m_bones.shaftPosition(s.nearest, p);
-  s.spongiosa = m_bones.bones()[s.nearest].spongiosa;
+  s.cancellousBone = m_bones.bones()[s.nearest].cancellousBone;
   s.surface = skinDistance(p, *nearest);
   s.fascia = s.surface + footFasciaDepth(p);
   return s;
@@ -145,20 +147,20 @@ void FootSubject::addBones() {
   for (std::size_t i = 0; i < FootBones::count; ++i) {
     const FootBone& bone = m_bones.bones()[i];
     const auto label = addSegment(bone.id, bone.name, boneColor);
-    const double ends = bone.cortex, middle = bone.shaftCortex;
-    addLayer(label, footMarrowSignal, bone.shape.box, [=](const FootSite& s) {
-      const double thickness = i == s.nearest ? std::lerp(ends, middle, s.shaft) : ends;
+    const double endCortex = bone.cortex, shaftCortex = bone.shaftCortex;
+    addLayer(label, footMarrowHu, bone.shape.box, [=](const FootSite& s) {
+      const double thickness =
+          i == s.nearest ? std::lerp(endCortex, shaftCortex, s.shaft) : endCortex;
       return s.bones[i] + thickness + 0.15 * valueNoise(s.point / 4.0, 276);
     });
-    addLayer(label, footCortexSignal, bone.shape.box,
-             [i](const FootSite& s) { return s.bones[i]; });
+    addLayer(label, footCortexHu, bone.shape.box, [i](const FootSite& s) { return s.bones[i]; });
   }
 }
 
 void FootSubject::addSoftTissue() {
   const Field underSkin = makeInset(footSkinThickness);
   const Field capsules = [](const FootSite& s) {
-    constexpr double halfWidth = 2.3; // mm; half the gap that a capsule bridges
+    constexpr double halfWidth = 2.3; // mm; capsules bridge joints up to twice as wide
     return 0.5 * (s.bones[s.nearest] + s.second) - halfWidth;
   };
   addLayer(addSegment("joints", "Joint cartilage and capsules", cartilageColor), makeConstant(85.0),
@@ -166,22 +168,22 @@ void FootSubject::addSoftTissue() {
   const std::vector<Solid> achilles = m_anatomy.at("achilles tendon");
   m_anatomy.at("extensor tendons").get_to(m_superficial);
   m_superficial.insert(m_superficial.end(), achilles.begin(), achilles.end());
-  addShapes(addSegment("achilles_tendon", "Achilles tendon", tendonColor), footTendonSignal,
-            achilles, footSkinThickness + 0.5);
+  addShapes(addSegment("achilles_tendon", "Achilles tendon", tendonColor), footTendonHu, achilles,
+            footSkinThickness + 0.5);
   const auto tendons = addSegment("tendons", "Tendons", tendonColor);
   for (const char* kind : {"extensor tendons", "flexor tendons"})
-    addShapes(tendons, footTendonSignal, m_anatomy.at(kind), footSkinThickness + 0.5);
-  addShapes(addSegment("plantar_aponeurosis", "Plantar aponeurosis", tendonColor), footTendonSignal,
+    addShapes(tendons, footTendonHu, m_anatomy.at(kind), footSkinThickness + 0.5);
+  addShapes(addSegment("plantar_aponeurosis", "Plantar aponeurosis", tendonColor), footTendonHu,
             m_anatomy.at("plantar aponeurosis"), footSkinThickness + 2.0);
   addShapes(addSegment("vessels", "Vessels", vesselColor), makeConstant(45.0),
             m_anatomy.at("vessels"), footSkinThickness + 0.4);
   const auto muscles = addSegment("muscles", "Muscles", muscleColor);
   for (const Solid belly : m_anatomy.at("muscles"))
-    addLayer(muscles, footMuscleSignal, belly.box, [belly](const FootSite& s) {
+    addLayer(muscles, footMuscleHu, belly.box, [belly](const FootSite& s) {
       const double shape = belly.distance(s.point) + 0.6 * valueNoise(s.point / 6.0, 277);
       return std::max(shape, s.fascia);
     });
-  addLayer(addSegment("fat", "Fat", fatColor), footFatSignal, everywhere, underSkin);
+  addLayer(addSegment("fat", "Fat", fatColor), footFatHu, everywhere, underSkin);
   addLayer(addSegment("skin", "Skin", skinColor), makeConstant(35.0), everywhere, makeInset(0.0));
 }
 
@@ -191,7 +193,7 @@ Phantom makeFootPhantom(const Size3& size) {
       FootSubject(), makePhantomGrid(size, footFieldOfView, axes, footFieldCenter), "foot");
   addThresholdedBones(phantom);
   phantom.property = footProperty();
-  phantom.towardViewer = {-0.9, 0.75, 0.75};
+  phantom.towardViewer = {-0.9, 0.75, 0.75}; // medial, anterior, above
   return phantom;
 }
 

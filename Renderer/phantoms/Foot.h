@@ -14,12 +14,12 @@ struct FootSite : PaintSite {
   std::size_t nearest;        ///< index of the nearest bone
   double second;              ///< mm to the second nearest bone
   double shaft;               ///< FootBones::shaftPosition in the nearest bone
-  double spongiosa;           ///< HU, in the nearest bone
+  double cancellousBone;      ///< HU, in the nearest bone
 };
 
 // Hounsfield units, including the tissue's texture.
-double footCortexSignal(const FootSite& site);
-double footMarrowSignal(const FootSite& site);
+double footCortexHu(const FootSite& site);
+double footMarrowHu(const FootSite& site);
 
 class FootSubject : public LayeredSubject<FootSite> {
 public:

@@ -38,7 +38,7 @@ FootBone makeBone(const Anatomy& entry, const std::vector<FootBone>& earlier) {
   bone.head = entry.value("head", bone.head);
   bone.cortex = entry.value("cortex", bone.cortex);
   bone.shaftCortex = entry.value("shaftCortex", bone.shaftCortex);
-  bone.spongiosa = entry.value("spongiosa", bone.spongiosa);
+  bone.cancellousBone = entry.value("spongiosa", bone.cancellousBone);
   bone.shape = entry.contains("shape")
                    ? entry["shape"].get<Solid>()
                    : longBone(bone.base, bone.head, entry.at("radii"), entry.at("bow"));

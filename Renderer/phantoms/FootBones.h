@@ -19,7 +19,7 @@ struct FootBone {
   double gap = 2.0;                   ///< mm; joint width
   Vec3 base = Vec3::Zero(), head = Vec3::Zero(); ///< ends of a long bone; equal in others
   double cortex = 1.0, shaftCortex = 1.0;        ///< mm; thickness at the ends and mid-shaft
-  double spongiosa = 300.0;                      ///< HU between the trabeculae, at the ends
+  double cancellousBone = 300.0;                 ///< HU between the trabeculae, at the ends
 };
 
 class FootBones {

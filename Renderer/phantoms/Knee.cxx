@@ -15,7 +15,8 @@ const Vec3 kneeFieldCenter{0.0, -2.0, 6.8};      ///< world
 constexpr double kneeSkinThickness = 1.5;
 constexpr double fasciaThickness = 0.6;
 constexpr double fluidFilm = 0.7; ///< mm; fluid on the articular surfaces
-constexpr double fasciaSignal = 210.0;
+constexpr double fasciaSignal = 210.0, fluidSignal = 215.0, cortexSignal = 66.0;
+constexpr double kneeBoxMargin = 1.5; ///< mm; noise moves surfaces out of their boxes
 
 /// A point with the distances that most layers need.
 struct KneeSite : PaintSite {
@@ -157,7 +158,7 @@ private:
   std::uint8_t m_deepFat = 0; ///< label of the intermuscular fat
 };
 
-KneeSubject::KneeSubject() : LayeredSubject(1.5) {
+KneeSubject::KneeSubject() : LayeredSubject(kneeBoxMargin) {
   addBones();
   addCartilage();
   addLigaments();
@@ -196,7 +197,7 @@ void KneeSubject::addBones() {
     addLayer(label, marrowSignal, everywhere, [surface](const KneeSite& s) {
       return s.*surface < 1.0 ? s.*surface + cortexThickness(s.point) : KneeBones::maxDistance;
     });
-    addLayer(label, makeConstant(66.0), everywhere,
+    addLayer(label, makeConstant(cortexSignal), everywhere,
              [surface](const KneeSite& s) { return s.*surface; });
   };
   bone("Femur", "Femur", &KneeSite::femur);
@@ -241,12 +242,12 @@ void KneeSubject::addMenisci() {
 
 void KneeSubject::addJointSpace() {
   const auto fluid = addSegment("JointFluid", "Joint fluid", {0.667, 0.980, 0.980});
-  addLayer(fluid, makeConstant(215.0), everywhere, [](const KneeSite& s) {
+  addLayer(fluid, makeConstant(fluidSignal), everywhere, [](const KneeSite& s) {
     return std::min({coverDistance(s.femur, s.intactFemoralCartilage, fluidFilm),
                      coverDistance(s.tibia, s.tibialCartilage, fluidFilm),
                      coverDistance(s.patella, s.patellarCartilage, fluidFilm)});
   });
-  addLayer(fluid, makeConstant(215.0), {{-17, 25, 45}, {19, 38, 75}}, suprapatellarRecess);
+  addLayer(fluid, makeConstant(fluidSignal), {{-17, 25, 45}, {19, 38, 75}}, suprapatellarRecess);
   addDeepLayer(addSegment("Retinaculum", "Patellar retinaculum", tendonColor),
                makeConstant(fasciaSignal), {{-46, 0, -14}, {49, 46, 62}}, patellarRetinaculum);
   addDeepLayer(

@@ -27,6 +27,7 @@ Vec2 normalPair(std::uint64_t voxel) {
 double valueNoise(const Vec3& point, std::uint64_t seed) {
   const Vec3 floor = point.array().floor();
   const Vec3 f = point - floor;
+  // Smoothstep: weights of the upper lattice points.
   const Vec3 s = f.array().square() * (3.0 - 2.0 * f.array());
   const auto x = static_cast<std::int64_t>(floor.x());
   const auto y = static_cast<std::int64_t>(floor.y());

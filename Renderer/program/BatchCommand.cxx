@@ -92,7 +92,7 @@ private:
   }
 
   /// Threads of a worker; the total is divided evenly.
-  int workerThreads(std::size_t worker) const {
+  int countThreads(std::size_t worker) const {
     const int share = m_options.threads / m_options.workers;
     const int rest = m_options.threads % m_options.workers;
     return std::max(1, share + (static_cast<int>(worker) < rest ? 1 : 0));
@@ -116,7 +116,7 @@ private:
 
   /// Throws Error (output).
   void startWorker(std::size_t row, std::unique_ptr<RowManifest> manifest, std::size_t worker) {
-    auto arguments = manifest->arguments(workerThreads(worker));
+    auto arguments = manifest->arguments(countThreads(worker));
     m_workers[worker].reset(
         new Worker{row, std::move(manifest), ChildProcess(std::move(arguments))});
   }
@@ -125,9 +125,9 @@ private:
     const std::unique_ptr<Worker> worker = std::move(m_workers[index]);
     const ChildProcess& child = worker->child;
     RowOutcome outcome{State::done, child.status(), worker->watch.seconds()};
-    const bool wasYoung =
-        m_hasRequestedStop && outcome.status == 128 + SIGTERM; // had no signal handler yet
-    if (wasYoung || outcome.status == stoppedStatus) {
+    const bool wasStarting = // had no signal handler yet
+        m_hasRequestedStop && outcome.status == 128 + SIGTERM;
+    if (wasStarting || outcome.status == stoppedStatus) {
       outcome.state = State::stopped;
       outcome.status = stoppedStatus;
     } else if (outcome.status != 0) {
@@ -188,7 +188,7 @@ private:
     double done = static_cast<double>(m_rendered);
     for (const auto& worker : m_workers)
       if (worker && m_seconds > 0.0)
-        done +=
+        done += // a running row counts as at most 0.9
             std::min(0.9, worker->watch.seconds() * static_cast<double>(m_rendered) / m_seconds);
     return toDo > 0.0 ? std::min(1.0, done / toDo) : 1.0;
   }
@@ -236,8 +236,8 @@ BatchOptions makeBatchOptions(const OptionValues& values) {
   return options;
 }
 
-/// Options that apply to all rows, without the batch's own.
-OptionValues commonValues(const OptionValues& values) {
+/// Values of the render options that apply to all rows.
+OptionValues removeBatchOptions(const OptionValues& values) {
   OptionValues common = values;
   for (const Option& option : batchSyntax().options)
     if (!isImageOption(option) && option.name != "layers")
@@ -257,7 +257,7 @@ int batchCommand(int argc, char** argv, int first) {
   BatchResults results{*values->text("TABLE"), {}, {}, {}};
   results.folder = values->text("output").value_or(
       (results.table.parent_path() / results.table.stem()).string());
-  results.rows = readBatchTable(results.table, commonValues(*values));
+  results.rows = readBatchTable(results.table, removeBatchOptions(*values));
   results.outcomes.resize(results.rows.size());
   const CreatedFolders made(results.folder);
   Outputs outputs;

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using State = RowOutcome::State;
 
-const char* stateName(State state) {
+const char* formatState(State state) {
   switch (state) {
   case State::done:
     return "done";
@@ -26,11 +26,11 @@ const char* stateName(State state) {
   }
 }
 
-fs::path summaryPath(const BatchResults& results) {
+fs::path makeSummaryPath(const BatchResults& results) {
   return results.folder / "study.csv";
 }
 
-std::vector<fs::path> sheetPaths(const BatchResults& results) {
+std::vector<fs::path> makeSheetPaths(const BatchResults& results) {
   std::vector<fs::path> paths = {results.folder / "study.png"};
   while (paths.size() * maxSheetEntries < results.rows.size())
     paths.push_back(results.folder / concat("study-", paths.size() + 1, ".png"));
@@ -45,10 +45,11 @@ bool isSummary(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
   const std::string head = formatCsvLine(firstColumns);
-  return std::getline(file, line) && line.starts_with(head.substr(0, head.size() - 2));
+  return std::getline(file, line) && line.starts_with(head.substr(0, head.size() - 2)); // CR LF
 }
 
-/// Numbers of the statistics by JSON path, as "samplesPerPixel.mean"; lists are omitted.
+/// Numbers of a row's statistics (--stats) by JSON path, as "samplesPerPixel.mean"; lists are
+/// omitted.
 using Measures = std::map<std::string, double>;
 
 void addMeasures(const nlohmann::json& json, const std::string& place, Measures& measures) {
@@ -87,7 +88,7 @@ std::string formatSummary(const BatchResults& results, const std::vector<Measure
     const fs::path picture = rowImagePath(results.rows[i], results.folder);
     std::vector<std::string> fields = {
         results.rows[i].name,
-        stateName(outcome.state),
+        formatState(outcome.state),
         outcome.state == State::missing ? "" : concat(outcome.status),
         outcome.error,
         outcome.state == State::done ? picture.lexically_relative(results.folder).string() : "",
@@ -108,17 +109,19 @@ SheetEntry makeSheetEntry(const BatchRow& row, const RowOutcome& outcome, const 
     entry.image = rowImagePath(row, folder);
   if (outcome.state != State::done)
     entry.problem =
-        concat(stateName(outcome.state), outcome.error.empty() ? "" : ": ", outcome.error);
+        concat(formatState(outcome.state), outcome.error.empty() ? "" : ": ", outcome.error);
   std::vector<std::string> facts;
-  const auto measure = [&measures](const char* name) {
+  const auto findMeasure = [&measures](const char* name) {
     const auto found = measures.find(name);
     return found == measures.end() ? std::optional<double>() : found->second;
   };
-  if (const auto coverage = measure("focusCoverage"))
+  if (const auto coverage = findMeasure("focusCoverage"))
     facts.push_back(concat(std::lround(100.0 * *coverage), " % of the focus visible"));
-  if (const auto filtered = measure("noiseFiltered");
-      const auto noise = filtered ? filtered : measure("noise"))
-    facts.push_back("noise " + toString(*noise, 2));
+  for (const char* name : {"noiseDenoised", "noiseFiltered", "noise"}) // the second by version 0.1
+    if (const auto noise = findMeasure(name)) {
+      facts.push_back("noise " + toString(*noise, 2));
+      break;
+    }
   entry.lines.push_back(join(facts, ", "));
   return entry;
 }
@@ -130,8 +133,8 @@ std::size_t BatchResults::count(State state) const {
 }
 
 void declareResults(const BatchResults& results, Outputs& outputs) {
-  outputs.add(summaryPath(results), isSummary);
-  for (const fs::path& path : sheetPaths(results))
+  outputs.add(makeSummaryPath(results), isSummary);
+  for (const fs::path& path : makeSheetPaths(results))
     declareImage(path, outputs, NameOrigin::standard);
 }
 
@@ -145,13 +148,13 @@ void writeResults(const BatchResults& results, Outputs& outputs) {
                                                     : Measures());
     entries.push_back(makeSheetEntry(row, outcome, measures.back(), results.folder));
   }
-  outputs.write(summaryPath(results), formatSummary(results, measures));
-  const std::vector<fs::path> paths = sheetPaths(results);
+  outputs.write(makeSummaryPath(results), formatSummary(results, measures));
+  const std::vector<fs::path> paths = makeSheetPaths(results);
   for (std::size_t i = 0; i < paths.size(); ++i) {
     std::string facts = concat(results.rows.size(), " cases");
     for (const State state : {State::done, State::failed, State::stopped, State::missing})
       if (const std::size_t count = results.count(state); count > 0)
-        facts += concat(", ", count, " ", stateName(state));
+        facts += concat(", ", count, " ", formatState(state));
     if (paths.size() > 1)
       facts += concat(", sheet ", i + 1, " of ", paths.size());
     const std::size_t first = i * maxSheetEntries;

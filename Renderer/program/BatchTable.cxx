@@ -26,7 +26,7 @@ const Option batchTable[] = {
     {"formats", "L,...", batchGroup, "Images per row beside the .png: exr, nrrd, tif [none]",
      ValueSpec::list()},
     {"rows", "K/N", batchGroup,
-     "Only rows K, K+N, K+2N, ... for one of N machines; afterwards the same command without "
+     "Only rows K, K+N, K+2N, ... for one of N machines; afterward the same command without "
      "--rows writes study.csv and study.png [all]"},
     {"restart", "", batchGroup, "Render all rows again, replacing existing files"},
 };

@@ -18,17 +18,19 @@ const Option commonTable[] = {
      "JSON) and exit"},
 };
 
-constexpr std::size_t page = 80, column = 30; ///< characters per line, and before descriptions
+constexpr std::size_t pageWidth = 80,
+                      textColumn = 30; ///< characters per line, and before descriptions
 
 /// A name and its description, in two columns.
 std::string formatEntry(std::string_view name, std::string_view text) {
-  const std::string margin(column, ' ');
+  const std::string margin(textColumn, ' ');
   std::string head = concat("  ", name);
-  if (head.size() < column)
-    head.resize(column, ' ');
+  if (head.size() < textColumn)
+    head.resize(textColumn, ' ');
   else
     head.append("\n").append(margin);
-  return concat(head, replaceAll(wrapLines(text, page - column), "\n", "\n" + margin), "\n");
+  return concat(head, replaceAll(wrapLines(text, pageWidth - textColumn), "\n", "\n" + margin),
+                "\n");
 }
 
 /// Summary, positional arguments, and options by group.
@@ -39,7 +41,7 @@ std::string formatHelp(const CommandSyntax& syntax) {
     names += formatEntry(positional.name, positional.description);
   }
   std::string text =
-      concat(wrapLines(syntax.summary, page), "\n\n", usage, " [OPTIONS]\n\n", names);
+      concat(wrapLines(syntax.summary, pageWidth), "\n\n", usage, " [OPTIONS]\n\n", names);
   for (const Option& option : commonOptions)
     text += formatEntry("--" + option.name, option.description);
   std::string group;
@@ -53,11 +55,11 @@ std::string formatHelp(const CommandSyntax& syntax) {
   return text;
 }
 
-std::string helpHint(const CommandSyntax& syntax) {
+std::string formatHelpHint(const CommandSyntax& syntax) {
   return concat(" (see fenestra ", syntax.name, " --help)");
 }
 
-Error unknownOption(const CommandSyntax& syntax, std::string_view given) {
+Error makeUnknownOptionError(const CommandSyntax& syntax, std::string_view given) {
   given = given.substr(0, given.find('='));
   std::vector<std::string> names = listNames(commonOptions);
   std::ranges::copy(listNames(listOptions(syntax)), std::back_inserter(names));
@@ -65,13 +67,13 @@ Error unknownOption(const CommandSyntax& syntax, std::string_view given) {
   const std::string likely = findNearest(toLower(word), names);
   return usageError(given, ": unknown option",
                     likely.empty() ? "" : concat("; did you mean --", likely, "?"),
-                    helpHint(syntax));
+                    formatHelpHint(syntax));
 }
 
-Error extraArgument(const CommandSyntax& syntax, std::string_view given) {
+Error makeExtraArgumentError(const CommandSyntax& syntax, std::string_view given) {
   return usageError("'", given, "': unexpected argument after ",
                     join(syntax.positionals, " and ", std::mem_fn(&Positional::name)),
-                    "; quote names that contain blanks", helpHint(syntax));
+                    "; quote names that contain blanks", formatHelpHint(syntax));
 }
 
 using Arguments = std::span<const std::string_view>;
@@ -90,7 +92,7 @@ void parseOption(const CommandSyntax& syntax, std::string_view word, Arguments& 
   const Option* const option =
       word.starts_with("--") ? findOption(syntax.options, word.substr(2, equals - 2)) : nullptr;
   if (!option)
-    throw unknownOption(syntax, word);
+    throw makeUnknownOptionError(syntax, word);
   if (option->isSwitch() && hasValue)
     throw usageError("--", option->name, ": takes no value; omit it");
   if (option->isSwitch())
@@ -113,7 +115,7 @@ OptionValues parseArguments(const CommandSyntax& syntax, Arguments words) {
     else if (!optionsEnded && word.size() > 1 && word[0] == '-')
       parseOption(syntax, word, words, values);
     else if (positional == syntax.positionals.end())
-      throw extraArgument(syntax, word);
+      throw makeExtraArgumentError(syntax, word);
     else if (word.empty())
       throw usageError(positional->name, ": must not be empty; name a file");
     else if (values.add(positional->name, std::string(word)); !positional->canRepeat)
@@ -121,7 +123,7 @@ OptionValues parseArguments(const CommandSyntax& syntax, Arguments words) {
   }
   if (positional != syntax.positionals.end() && !values.has(positional->name))
     throw usageError(positional->name, ": missing; expected: ", positional->description,
-                     helpHint(syntax));
+                     formatHelpHint(syntax));
   for (const ExcludedOptions& refusal : syntax.excluded)
     for (const std::string& name : refusal.names)
       if (values.has(name))
@@ -130,7 +132,7 @@ OptionValues parseArguments(const CommandSyntax& syntax, Arguments words) {
 }
 
 /// Optimal string alignment distance: insertions, deletions, substitutions, adjacent swaps.
-std::size_t editDistance(std::string_view a, std::string_view b) {
+std::size_t computeEditDistance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i)
     for (std::size_t j = 0; j <= b.size(); ++j) {
@@ -159,12 +161,13 @@ std::vector<std::string> listNames(std::span<const Option> options) {
 std::string findNearest(std::string_view word, std::span<const std::string> candidates) {
   constexpr std::size_t longest = 32; // option names are shorter; a path may not be
   std::string best;
-  std::size_t least = std::min<std::size_t>(3, word.size() / 3 + 1); // a misspelling is closer
+  std::size_t least =
+      std::min<std::size_t>(3, word.size() / 3 + 1); // a likely misspelling has fewer edits
   if (word.empty() || word.size() > longest)
     return best;
   for (const std::string& candidate : candidates) {
     const bool isPrefix = word.size() >= 2 && candidate.starts_with(word);
-    const std::size_t distance = isPrefix ? 1 : editDistance(word, candidate);
+    const std::size_t distance = isPrefix ? 1 : computeEditDistance(word, candidate);
     if (distance < least) {
       least = distance;
       best = candidate;

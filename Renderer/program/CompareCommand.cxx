@@ -19,9 +19,9 @@ const Option compareTable[] = {
     {"output", "FILE", compareGroup, "Difference image: .png .tif .exr .nrrd"},
 };
 
-Image readWithError(const OptionValues& values, const char* name, const char* errorFlag) {
+Image readWithError(const OptionValues& values, const char* name, const char* errorOption) {
   Image image = readImage(*values.text(name));
-  if (const auto error = values.text(errorFlag))
+  if (const auto error = values.text(errorOption))
     attachError(image, readImage(*error));
   return image;
 }

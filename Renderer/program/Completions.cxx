@@ -18,8 +18,8 @@ struct Candidates {
 };
 
 Candidates findCandidates(const Option& option) {
-  const ValueSpec& hasOption = option.spec;
-  return {hasOption.choices.empty() ? hasOption.namedValues : hasOption.choices,
+  const ValueSpec& spec = option.spec;
+  return {spec.choices.empty() ? spec.namedValues : spec.choices,
           option.canNameFile() || option.placeholder == "DIR"};
 }
 
@@ -27,12 +27,12 @@ Candidates findCandidates(const Positional& positional) {
   return {positional.choices, positional.choices.empty()};
 }
 
-std::string commandName(const Command& command) {
+std::string getCommandName(const Command& command) {
   return command.syntax().name;
 }
 
-std::string commandNames() {
-  return join(commands(), " ", commandName);
+std::string joinCommandNames() {
+  return join(commands(), " ", getCommandName);
 }
 
 /// Options of a command, common ones first.
@@ -43,7 +43,7 @@ std::vector<Option> listAllOptions(const CommandSyntax& syntax) {
 }
 
 /// Summary up to the first period, semicolon or colon.
-std::string firstClause(const std::string& summary) {
+std::string extractFirstClause(const std::string& summary) {
   const std::size_t end = std::min({summary.find(". "), summary.find("; "), summary.find(": ")});
   std::string clause = summary.substr(0, end);
   if (clause.ends_with('.'))
@@ -83,12 +83,12 @@ complete -F _fenestra fenestra
 )sh";
 
 /// Assigns candidates to the script's variables.
-std::string bashCandidates(const Candidates& candidates) {
+std::string formatBashCandidates(const Candidates& candidates) {
   return concat("words='", candidates.text(), "' files=", candidates.files ? "yes" : "");
 }
 
 /// Case of a command: all its options, and the candidates for each option's value.
-std::string bashCase(const CommandSyntax& syntax) {
+std::string formatBashCase(const CommandSyntax& syntax) {
   std::vector<std::pair<Candidates, std::string>> cases; // with the options that share them
   const std::vector<Option> options = listAllOptions(syntax);
   for (const Option& option : options) {
@@ -106,8 +106,9 @@ std::string bashCase(const CommandSyntax& syntax) {
   std::string text = concat("    ", syntax.name, ")\n      flags='", join(options, " ", name),
                             "'\n      case $before in\n");
   for (const auto& [candidates, names] : cases)
-    text += concat("        ", names, ") ", bashCandidates(candidates), " ;;\n");
-  return concat(text, "        *) ", bashCandidates(findCandidates(syntax.positionals.front())),
+    text += concat("        ", names, ") ", formatBashCandidates(candidates), " ;;\n");
+  return concat(text, "        *) ",
+                formatBashCandidates(findCandidates(syntax.positionals.front())),
                 " value= ;;\n      esac\n      ;;\n");
 }
 
@@ -144,7 +145,7 @@ _fenestra "$@"
 )sh";
 
 /// Quotes for zsh.
-std::string zshQuote(std::string_view text) {
+std::string quoteForZsh(std::string_view text) {
   return concat("'", replaceAll(text, "'", "'\\''"), "'");
 }
 
@@ -156,17 +157,17 @@ std::string escape(std::string_view text, std::string_view marks) {
   return result;
 }
 
-std::string zshAction(const Candidates& candidates) {
+std::string formatZshAction(const Candidates& candidates) {
   if (candidates.words.empty())
     return candidates.files ? "_files" : " ";
   return candidates.files ? concat(" _fenestra_either ", candidates.text())
                           : concat("(", candidates.text(), ")");
 }
 
-std::string zshCase(const CommandSyntax& syntax) {
+std::string formatZshCase(const CommandSyntax& syntax) {
   std::string text = concat("    ", syntax.name, ")\n      _arguments");
   const auto add = [&text](const std::string& specification) {
-    text += concat(" \\\n        ", zshQuote(specification));
+    text += concat(" \\\n        ", quoteForZsh(specification));
   };
   for (const Option& option : listAllOptions(syntax)) {
     const std::string help = concat("[", escape(option.help(), "\\]"), "]");
@@ -174,10 +175,10 @@ std::string zshCase(const CommandSyntax& syntax) {
       add(concat("--", option.name, help));
     else
       add(concat("*--", option.name, "=", help, ":", escape(option.placeholder, "\\:"), ":",
-                 zshAction(findCandidates(option))));
+                 formatZshAction(findCandidates(option))));
   }
   for (const Positional& positional : syntax.positionals)
-    add(concat(":", positional.name, ":", zshAction(findCandidates(positional))));
+    add(concat(":", positional.name, ":", formatZshAction(findCandidates(positional))));
   return text + "\n      ;;\n";
 }
 
@@ -202,13 +203,13 @@ end
 complete -c fenestra -f
 )sh";
 
-std::string fishLine(const std::string& condition, const std::string& rest,
-                     std::string_view text = "") {
+std::string formatFishLine(const std::string& condition, const std::string& rest,
+                           std::string_view text = "") {
   return concat("complete -c fenestra -n '__fenestra_is", condition, "'", rest,
                 text.empty() ? "" : concat(" -d '", escape(text, "\\'"), "'"), "\n");
 }
 
-std::string fishCandidates(const Candidates& candidates) {
+std::string formatFishCandidates(const Candidates& candidates) {
   return concat(candidates.files ? " -F" : "",
                 candidates.words.empty() ? "" : concat(" -a '", candidates.text(), "'"));
 }
@@ -219,22 +220,23 @@ bool hasOption(const Command& command, const Option& option) {
 }
 
 /// Lines of the options that no earlier command accepts, each with all commands that accept it.
-std::string fishOptions(std::size_t which) {
+std::string formatFishOptions(std::size_t commandIndex) {
   std::string lines;
-  for (const Option& option : listAllOptions(commands()[which].syntax())) {
+  for (const Option& option : listAllOptions(commands()[commandIndex].syntax())) {
     std::string accepting;
     const auto isAccepting = [&option](const Command& command) {
       return hasOption(command, option);
     };
-    if (std::ranges::any_of(commands().first(which), isAccepting))
+    if (std::ranges::any_of(commands().first(commandIndex), isAccepting))
       continue;
     for (const Command& command : commands())
       if (isAccepting(command))
-        accepting += concat(" ", commandName(command));
+        accepting += concat(" ", getCommandName(command));
     const Candidates candidates = findCandidates(option);
     const char* const value = option.isSwitch() ? "" : candidates.files ? " -r" : " -x";
-    lines += fishLine(accepting, concat(" -l ", option.name, value, fishCandidates(candidates)),
-                      option.help());
+    lines += formatFishLine(accepting,
+                            concat(" -l ", option.name, value, formatFishCandidates(candidates)),
+                            option.help());
   }
   return lines;
 }
@@ -242,9 +244,9 @@ std::string fishOptions(std::size_t which) {
 } // namespace
 
 std::string makeBashCompletions() {
-  std::string text = replaceAll(bashBegin, "@COMMANDS@", commandNames());
+  std::string text = replaceAll(bashBegin, "@COMMANDS@", joinCommandNames());
   for (const Command& command : commands())
-    text += bashCase(command.syntax());
+    text += formatBashCase(command.syntax());
   return text + bashEnd;
 }
 
@@ -253,19 +255,21 @@ std::string makeZshCompletions() {
   std::string cases;
   for (const Command& command : commands()) {
     const CommandSyntax& syntax = command.syntax();
-    names += concat("    ", zshQuote(concat(syntax.name, ":", firstClause(syntax.summary))), "\n");
-    cases += zshCase(syntax);
+    names += concat(
+        "    ", quoteForZsh(concat(syntax.name, ":", extractFirstClause(syntax.summary))), "\n");
+    cases += formatZshCase(syntax);
   }
   return replaceAll(zshBegin, "@COMMANDS@", names) + cases + zshEnd;
 }
 
 std::string makeFishCompletions() {
-  std::string text = replaceAll(fishBegin, "@COMMANDS@", commandNames());
+  std::string text = replaceAll(fishBegin, "@COMMANDS@", joinCommandNames());
   for (std::size_t i = 0; i < commands().size(); ++i) {
     const CommandSyntax& syntax = commands()[i].syntax();
-    text += fishLine("", " -a " + syntax.name, firstClause(syntax.summary));
-    text += fishLine(" " + syntax.name, fishCandidates(findCandidates(syntax.positionals.front())));
-    text += fishOptions(i);
+    text += formatFishLine("", " -a " + syntax.name, extractFirstClause(syntax.summary));
+    text += formatFishLine(" " + syntax.name,
+                           formatFishCandidates(findCandidates(syntax.positionals.front())));
+    text += formatFishOptions(i);
   }
   return text;
 }

@@ -61,20 +61,20 @@ std::string formatNumber(double x, const char* format = "%.6g") {
 // ---- members of the report
 
 /// Member that is a text, shortened; empty: null.
-std::string textMember(const Json& object, const char* key, std::size_t most) {
+std::string formatTextMember(const Json& object, const char* key, std::size_t most) {
   const Json& member = object[key];
   return member.is_null() ? "" : shorten(member, most);
 }
 
 /// Name of a file in full, of a node shortened.
-std::string nodeName(const Json& node) {
-  return textMember(node, "name", node["id"].is_null() ? longestFile : longestName);
+std::string formatNodeName(const Json& node) {
+  return formatTextMember(node, "name", node["id"].is_null() ? longestFile : longestName);
 }
 
 /// "name (id)", or only one of them.
-std::string nameAndId(const Json& node) {
-  const std::string id = textMember(node, "id", longestId);
-  return joinNonEmpty({nodeName(node), id.empty() ? "" : "(" + id + ")"}, " ");
+std::string formatNameAndId(const Json& node) {
+  const std::string id = formatTextMember(node, "id", longestId);
+  return joinNonEmpty({formatNodeName(node), id.empty() ? "" : "(" + id + ")"}, " ");
 }
 
 std::string toHex(const Json& color) {
@@ -97,7 +97,7 @@ std::string formatFiles(const Json& list) {
     return "";
   const auto missing = std::count_if(list.begin(), list.end(),
                                      [](const Json& file) { return file["there"] == false; });
-  std::string names = textMember(list[0], "name", longestFile - 10);
+  std::string names = formatTextMember(list[0], "name", longestFile - 10);
   if (list.size() > 1)
     names += concat(" and ", list.size() - 1, " more");
   if (missing > 0)
@@ -136,7 +136,7 @@ std::string fillTemplate(std::string_view words, const Json& object) {
     const auto close = words.find('}', open);
     const std::string key(words.substr(open + 1, close - open - 1));
     const std::string member =
-        key.empty() ? nameAndId(object) : formatValue(key, object.value(key, Json()));
+        key.empty() ? formatNameAndId(object) : formatValue(key, object.value(key, Json()));
     if (member.empty())
       return "";
     text.append(words.substr(0, open)).append(member);
@@ -193,16 +193,16 @@ std::string describe(const Json& part) {
 // ---- lines
 
 /// Title and lines; empty without lines.
-std::string section(const char* title, const std::string& lines) {
+std::string formatSection(const char* title, const std::string& lines) {
   return lines.empty() ? "" : std::string("\n") + title + "\n" + lines;
 }
 
-std::string line(const std::string& text) {
+std::string formatLine(const std::string& text) {
   return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
 }
 
 /// Wrapped text; the first line begins with `label`, the others are indented by its width.
-std::string paragraph(const std::string& label, const std::string& text) {
+std::string formatParagraph(const std::string& label, const std::string& text) {
   const std::string lines = wrapLines(toOneLine(text), width - countCharacters(label));
   return label + replaceAll(lines, "\n", "\n" + std::string(countCharacters(label), ' ')) + "\n";
 }
@@ -223,26 +223,26 @@ std::vector<std::string> alignColumns(std::vector<Row> rows, const std::string& 
   return lines;
 }
 
-std::string table(const std::string& indent, const std::vector<Row>& rows,
-                  const std::string& right) {
+std::string formatTable(const std::string& indent, const std::vector<Row>& rows,
+                        const std::string& right) {
   return join(alignColumns(rows, right), "",
-              [&indent](const std::string& row) { return line(indent + row); });
+              [&indent](const std::string& row) { return formatLine(indent + row); });
 }
 
 // ---- sections
 
 /// Cells of a segment's material: name, color, kind, and why it was chosen.
-Row materialCells(const Json& material) {
+Row formatMaterial(const Json& material) {
   const Json& color = material["color"];
   const std::string colors = color.is_null() ? "as it is"
                              : color[0].is_array()
                                  ? toHex(color[0][1]) + " to " + toHex(color.back()[1])
                                  : toHex(color);
-  return {material["name"].is_null() ? "-" : textMember(material, "name", 24), colors,
-          material["kind"], textMember(material, "why", 48)};
+  return {material["name"].is_null() ? "-" : formatTextMember(material, "name", 24), colors,
+          material["kind"], formatTextMember(material, "why", 48)};
 }
 
-std::string segmentTable(const Json& segments) {
+std::string formatSegments(const Json& segments) {
   std::vector<Row> rows = {
       {"value", "layer", "color", "voxels", "ml", "id", "name", "material", "seen", "kind", "why"}};
   const std::size_t count = std::min(segments.size(), maxSegments);
@@ -251,68 +251,69 @@ std::string segmentTable(const Json& segments) {
     rows.push_back(
         {segment["labelValue"].dump(), segment["layer"].dump(), toHex(segment["color"]),
          segment["voxels"].dump(), formatNumber(segment["milliliters"], "%.2f"),
-         textMember(segment, "id", 40),
-         textMember(segment, "name", 64) + (segment["shown"] == true ? "" : " (hidden)")});
-    std::ranges::move(materialCells(segment["material"]), std::back_inserter(rows.back()));
+         formatTextMember(segment, "id", 40),
+         formatTextMember(segment, "name", 64) + (segment["shown"] == true ? "" : " (hidden)")});
+    std::ranges::move(formatMaterial(segment["material"]), std::back_inserter(rows.back()));
   }
   if (segments.size() > count) {
     rows.push_back(Row(rows.front().size()));
     rows.back()[0] = "...";
     rows.back()[5] = concat(segments.size() - count, " more (--json lists them all)");
   }
-  return table("      ", rows, ">> >>");
+  return formatTable("      ", rows, ">> >>");
 }
 
 /// Lines "* name  id  description"; a long description gets a line of its own. The asterisk marks
 /// nodes that a render uses.
-std::string nodeLines(const Json& nodes) {
+std::string formatNodes(const Json& nodes) {
   const std::size_t count = std::min(nodes.size(), maxNodes);
   std::vector<Row> names;
   for (std::size_t i = 0; i < count; ++i)
-    names.push_back({(nodes[i]["used"] == true ? "* " : "  ") + nodeName(nodes[i]),
-                     textMember(nodes[i], "id", longestId)});
+    names.push_back({(nodes[i]["used"] == true ? "* " : "  ") + formatNodeName(nodes[i]),
+                     formatTextMember(nodes[i], "id", longestId)});
   const Row heads = alignColumns(names);
   std::string lines;
   for (std::size_t i = 0; i < count; ++i) {
     const Json& node = nodes[i];
     const std::string more = describe(node), full = heads[i] + "  " + more;
-    lines +=
-        countCharacters(full) <= width ? line(full) : line(heads[i]) + paragraph("      ", more);
+    lines += countCharacters(full) <= width
+                 ? formatLine(full)
+                 : formatLine(heads[i]) + formatParagraph("      ", more);
     if (!node["problem"].is_null())
-      lines += paragraph("      problem: ", node["problem"]);
+      lines += formatParagraph("      problem: ", node["problem"]);
     if (node.contains("segments") && !node["segments"].empty())
-      lines += segmentTable(node["segments"]);
+      lines += formatSegments(node["segments"]);
   }
   if (nodes.size() > count)
     lines += "  and " + std::to_string(nodes.size() - count) + " more (--json lists them all)\n";
   return lines;
 }
 
-std::string seriesLines(const Json& series) {
+std::string formatSeries(const Json& series) {
   std::vector<Row> rows = {{"number", "files", "modality", "description", "uid"}};
   for (const Json& one : series)
-    rows.push_back({textMember(one, "number", 8), one["files"].dump(),
-                    textMember(one, "modality", 8), textMember(one, "description", 24),
-                    textMember(one, "uid", 64)});
-  return series.empty() ? "" : table("  ", rows, ">>");
+    rows.push_back({formatTextMember(one, "number", 8), one["files"].dump(),
+                    formatTextMember(one, "modality", 8), formatTextMember(one, "description", 24),
+                    formatTextMember(one, "uid", 64)});
+  return series.empty() ? "" : formatTable("  ", rows, ">>");
 }
 
-std::string otherLines(const Json& others) {
+std::string formatOthers(const Json& others) {
   Row tags;
   for (const auto& [tag, count] : others.items())
     tags.push_back(shorten(tag, longestName) + (count > 1 ? " (" + count.dump() + ")" : ""));
-  return tags.empty() ? "" : paragraph("  ", joinNonEmpty(tags));
+  return tags.empty() ? "" : formatParagraph("  ", joinNonEmpty(tags));
 }
 
-std::string listLines(const Json& list) {
-  return join(list, "", [](const Json& line) { return paragraph("  - ", line); });
+std::string formatList(const Json& list) {
+  return join(list, "", [](const Json& line) { return formatParagraph("  - ", line); });
 }
 
-std::string renderLines(const Json& use) {
+std::string formatRender(const Json& use) {
   std::string lines;
   const auto add = [&](const char* label, const char* key, auto&& words) {
     if (const Json& part = use[key]; !part.empty()) // null is empty
-      lines += paragraph(label, words(part));
+      lines += formatParagraph(label, words(part));
   };
   const auto withName = [](const Json& part) {
     return fillTemplate("{}: ", part) + describe(part);
@@ -321,7 +322,7 @@ std::string renderLines(const Json& use) {
   add("  appearance    ", "look", describe);
   add("  crop          ", "crop", withName);
   add("  camera        ", "camera", [&](const Json& camera) {
-    return (nameAndId(camera).empty() ? "framed: " : "") + withName(camera);
+    return (formatNameAndId(camera).empty() ? "framed: " : "") + withName(camera);
   });
   add("  background    ", "background",
       [](const Json& part) { return formatColors(part) + fillTemplate(", of {view}", part); });
@@ -335,16 +336,16 @@ std::string renderLines(const Json& use) {
 }
 
 /// Lines of at most 100 characters; a truncated list states how much is missing.
-std::string inspectionText(const Inspection& inspection) {
+std::string formatInspection(const Inspection& inspection) {
   const std::map<std::string, const char*> kinds = {{"scene", "Slicer scene"},
                                                     {"volume", "volume"},
                                                     {"segmentation", "segmentation or label map"},
                                                     {"dicom", "DICOM folder"}};
   const bool refused = !inspection["refused"].is_null();
-  std::string text =
-      paragraph("", inspection["input"].get<std::string>() + ": " + kinds.at(inspection["kind"]) +
-                        fillTemplate(", version {version}", inspection));
-  text += section("DICOM series", seriesLines(inspection["series"]));
+  std::string text = formatParagraph("", inspection["input"].get<std::string>() + ": " +
+                                             kinds.at(inspection["kind"]) +
+                                             fillTemplate(", version {version}", inspection));
+  text += formatSection("DICOM series", formatSeries(inspection["series"]));
   for (const auto& [key, title] : {std::pair("volumes", "Volumes"),
                                    {"segmentations", "Segmentations"},
                                    {"volumeRenderings", "Volume renderings"},
@@ -353,16 +354,17 @@ std::string inspectionText(const Inspection& inspection) {
                                    {"views", "Views"},
                                    {"cameras", "Cameras"},
                                    {"transforms", "Transforms"}})
-    text += section(title, nodeLines(inspection[key]));
-  text += section("Other nodes", otherLines(inspection["others"]));
+    text += formatSection(title, formatNodes(inspection[key]));
+  text += formatSection("Other nodes", formatOthers(inspection["others"]));
   if (refused)
-    text +=
-        "\n" + paragraph("", "A render would fail: " + inspection["refused"].get<std::string>());
+    text += "\n" +
+            formatParagraph("", "A render would fail: " + inspection["refused"].get<std::string>());
   if (const Json& use = inspection["render"]; !use.is_null())
-    text += section(refused ? "It would use, as far as can be determined" : "A render would use",
-                    renderLines(use));
-  return text + section("Warnings", listLines(inspection["warnings"])) +
-         section("Ignored", listLines(inspection["ignored"]));
+    text +=
+        formatSection(refused ? "It would use, as far as can be determined" : "A render would use",
+                      formatRender(use));
+  return text + formatSection("Warnings", formatList(inspection["warnings"])) +
+         formatSection("Ignored", formatList(inspection["ignored"]));
 }
 
 // ---- the command
@@ -430,7 +432,7 @@ int inspectCommand(int argc, char** argv, int first) {
   const Inspection leftOut = stored.ignored;
   Inspection& warnings = inspection["warnings"];
   warnings.insert(warnings.begin(), leftOut.begin(), leftOut.end());
-  std::cout << (values->has("json") ? dumpJson(inspection) : inspectionText(inspection))
+  std::cout << (values->has("json") ? dumpJson(inspection) : formatInspection(inspection))
             << std::flush;
   return 0;
 }

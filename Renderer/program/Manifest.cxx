@@ -100,7 +100,8 @@ void Manifest::addInputs(const std::set<fs::path>& files) {
 }
 
 void Manifest::readRequest(int mostFiles) {
-  // JSON values and keys of a file and its item; bytes, with a name of 255 escaped characters.
+  // Maxima per file: JSON values and keys of the file and its item; bytes, with an escaped name of
+  // 255 characters.
   constexpr int parts = 23, bytes = 2100;
   const std::string text =
       readText(m_path, maxTextBytes + std::uint64_t{bytes} * static_cast<unsigned>(mostFiles));

@@ -140,7 +140,8 @@ void addStoredValue(const Option& option, const std::string& value, OptionValues
 }
 
 /// Reason why a scene's stored value is ignored; empty: it is used.
-std::string rejectionReason(const Input& input, const std::string& name, const std::string& value) {
+std::string findRejectionReason(const Input& input, const std::string& name,
+                                const std::string& value) {
   if (name == "volume" || name == "segmentation")
     return input.document()->find(value) ? "" : "is no node of the scene";
   if (isBeyondLimit(name, value))
@@ -198,7 +199,7 @@ SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
     const std::string value = isNode ? node.referenceId(name) : node.text(name);
     if (!isImageOption(option) || value.empty() || isReplaced(option, explicitValues))
       continue;
-    if (const std::string reason = rejectionReason(input, name, value); reason.empty())
+    if (const std::string reason = findRejectionReason(input, name, value); reason.empty())
       addStoredValue(option, value, merged);
     else
       result.ignored.push_back(concat(node.tag, ' ', describeNode(node), ": ", name, " \"",

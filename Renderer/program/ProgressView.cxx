@@ -26,7 +26,7 @@ std::string drawBar(double fraction, std::size_t width) {
 }
 
 /// Width of the terminal in characters, queried each time since the user may resize it.
-std::size_t terminalWidth() {
+std::size_t queryTerminalWidth() {
   winsize size = {};
   const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return known ? size.ws_col : 80;
@@ -81,9 +81,9 @@ void ProgressView::showBar(const std::vector<std::string>& status) const {
   fields.insert(fields.begin(), {percent, formatTime(left) + " left"});
 
   // A wrapped line cannot be erased, so fields that do not fit are omitted, the bar first.
-  constexpr std::size_t longest = 24;
-  constexpr std::size_t frame = 3;
-  const std::size_t width = terminalWidth() - 1;
+  constexpr std::size_t longest = 24; // of the bar
+  constexpr std::size_t frame = 3;    // "[", "]" and a blank
+  const std::size_t width = queryTerminalWidth() - 1;
   std::string line;
   for (const std::string& field : fields)
     if (line.size() + 2 + field.size() <= width)

@@ -37,7 +37,7 @@ struct RenderStats {
   std::vector<std::string> warnings = {}; ///< in addition to the scene's
 };
 
-double seconds(const timeval& t) {
+double toSeconds(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
 }
 
@@ -128,7 +128,7 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
       {"focus", stages.focus},       {"spline", stages.spline},       {"fill", stages.fill},
       {"features", stages.features}, {"transport", stats.transport},  {"filter", stats.filter},
       {"measure", stats.measure},    {"write", stats.write},          {"total", stats.total}};
-  json["cpuSeconds"] = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  json["cpuSeconds"] = toSeconds(usage.ru_utime) + toSeconds(usage.ru_stime);
   json["paths"] = c.paths;
   if (stats.checkpointPaths)
     json["pathsFromFilm"] = *stats.checkpointPaths;
@@ -187,8 +187,8 @@ std::vector<std::string> findStaleFiles(const RenderOptions& options, const Outp
   return warnings;
 }
 
-void report(const RenderOptions& options, const RenderResult& result,
-            const std::optional<double>& filtered, double seconds) {
+void printResult(const RenderOptions& options, const RenderResult& result,
+                 const std::optional<double>& filtered, double seconds) {
   const auto files = join(options.outputs, ", ", [](const auto& path) { return path.string(); });
   const SampleCounts counts = result.film.sampleCounts();
   const double noise = result.film.noise();
@@ -314,7 +314,7 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
         formatReturnValues({result.film.sampleCounts().mean,
                             stats.filtered.value_or(result.film.noise()), stats.transport}));
   outputs.commit();
-  report(options, result, stats.filtered, total.seconds());
+  printResult(options, result, stats.filtered, total.seconds());
   return result.reason == StopReason::request ? stopStatus() : 0;
 }
 

@@ -19,7 +19,7 @@ namespace fenestra {
 namespace {
 
 /// Quotes an argument for a POSIX shell.
-std::string shellQuote(const std::string& argument) {
+std::string quoteForShell(const std::string& argument) {
   const char* const plain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
   if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
@@ -53,7 +53,7 @@ std::map<std::string, std::string> makeHeader(const PreparedScene& scene,
       {"samples", concat(result.finishedSamples)},
       {"camera", formatCamera(scene.camera().pose())},
       {"look", toRelativeName(scene.transferName(), folder)},
-      {"command", concat("fenestra ", join(arguments, " ", shellQuote))}};
+      {"command", concat("fenestra ", join(arguments, " ", quoteForShell))}};
   if (options.preset)
     entries["preset"] = toRelativeName(*options.preset, folder);
   return entries;

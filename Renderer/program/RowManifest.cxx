@@ -19,15 +19,15 @@ using nlohmann::json;
 
 constexpr int maxRowFiles = 20;
 
-fs::path rowFile(const BatchRow& row, const fs::path& folder, const std::string& ending) {
+fs::path makeRowPath(const BatchRow& row, const fs::path& folder, const std::string& ending) {
   return folder / row.name / (row.name + ending);
 }
 
-std::vector<fs::path> rowImages(const BatchRow& row, const fs::path& folder,
-                                const std::vector<std::string>& formats) {
+std::vector<fs::path> listRowImages(const BatchRow& row, const fs::path& folder,
+                                    const std::vector<std::string>& formats) {
   std::vector<fs::path> pictures = {rowImagePath(row, folder)};
   for (const std::string& format : formats)
-    pictures.push_back(rowFile(row, folder, "." + format));
+    pictures.push_back(makeRowPath(row, folder, "." + format));
   return pictures;
 }
 
@@ -71,7 +71,7 @@ ContentDigest readFileState(const fs::path& path) {
 }
 
 /// Outcome in the manifest's entry. Throws Error (input).
-json checkedOutcome(const JsonNode& entry) {
+json readOutcome(const JsonNode& entry) {
   json more = {{"status", entry.at("status").number(0, 255)},
                {"seconds", entry.at("seconds").number(0.0, 1e12)}};
   if (const auto error = entry.find("error"))
@@ -82,11 +82,11 @@ json checkedOutcome(const JsonNode& entry) {
 } // namespace
 
 fs::path rowImagePath(const BatchRow& row, const fs::path& folder) {
-  return rowFile(row, folder, ".png");
+  return makeRowPath(row, folder, ".png");
 }
 
 fs::path rowStatsPath(const BatchRow& row, const fs::path& folder) {
-  return rowFile(row, folder, ".json");
+  return makeRowPath(row, folder, ".json");
 }
 
 RowManifest::RowManifest(const BatchRow& row, const fs::path& folder,
@@ -94,10 +94,11 @@ RowManifest::RowManifest(const BatchRow& row, const fs::path& folder,
     : m_row(row),
       m_folder(folder / row.name),
       m_made(m_folder),
-      m_images(rowImages(row, folder, formats)),
-      m_checkpoint(rowFile(row, folder, ".film")),
-      m_lock(rowFile(row, folder, ".study.json")),
-      m_manifest(rowFile(row, folder, ".study.json"), "row", listArguments(row, folder, formats)) {
+      m_images(listRowImages(row, folder, formats)),
+      m_checkpoint(makeRowPath(row, folder, ".film")),
+      m_lock(makeRowPath(row, folder, ".study.json")),
+      m_manifest(makeRowPath(row, folder, ".study.json"), "row",
+                 listArguments(row, folder, formats)) {
   if (!m_lock.isHeld())
     throw usageError(m_manifest.path(),
                      ": another batch is rendering this row; wait for it, or use another --output");
@@ -122,11 +123,11 @@ void RowManifest::read(bool restart) {
   unregisterInput(*there); // since the manifest is also an output
   m_manifest.addInputs(m_manifest.recordedInputs());
   m_manifest.readItems(
-      1, [this](int) { return files(); }, checkedOutcome);
+      1, [this](int) { return files(); }, readOutcome);
   const bool isSame = !m_manifest.findDifference();
-  if (const auto& pieces = m_manifest.finished();
-      isSame && pieces.contains(0) && pieces.at(0).extra.at("status") == 0)
-    m_finished = {RowOutcome::State::done, 0, pieces.at(0).extra.at("seconds")};
+  if (const auto& items = m_manifest.finished(); // the row is item 0, the only one
+      isSame && items.contains(0) && items.at(0).extra.at("status") == 0)
+    m_finished = {RowOutcome::State::done, 0, items.at(0).extra.at("seconds")};
   m_manifest.clearItems();
   m_isResumed = isSame && !m_finished && fileExists(m_checkpoint);
   if (m_finished)

@@ -21,7 +21,7 @@ using nlohmann::json;
 constexpr std::size_t longestLine = 1 << 20;
 
 /// Value as command-line text.
-std::string valueText(const std::string& name, const json& value) {
+std::string toOptionText(const std::string& name, const json& value) {
   if (value.is_string())
     return value.get<std::string>();
   if (value.is_number())
@@ -30,9 +30,10 @@ std::string valueText(const std::string& name, const json& value) {
 }
 
 /// Items separated by commas; commas in items are escaped.
-std::string listText(const std::string& name, const json& list) {
-  return join(list, ",",
-              [&name](const json& item) { return replaceAll(valueText(name, item), ",", "\\,"); });
+std::string toOptionList(const std::string& name, const json& list) {
+  return join(list, ",", [&name](const json& item) {
+    return replaceAll(toOptionText(name, item), ",", "\\,");
+  });
 }
 
 } // namespace
@@ -78,12 +79,12 @@ OptionValues applyChange(const json& change, const OptionValues& values) {
     result.remove(name);
     if (option->spec.canRepeat && value.is_array()) {
       for (const json& item : value)
-        result.add(name, valueText(name, item));
+        result.add(name, toOptionText(name, item));
       continue;
     }
     const std::string text = value.is_null()    ? ""
-                             : value.is_array() ? listText(name, value)
-                                                : valueText(name, value);
+                             : value.is_array() ? toOptionList(name, value)
+                                                : toOptionText(name, value);
     if (!text.empty())
       result.add(name, text);
   }

@@ -29,7 +29,7 @@ pugi::xml_node addParameters(pugi::xml_node module, const std::string& label,
 
 /// Slicer's type of an option. Slicer always passes numbers and enumerations, so without a default
 /// they become texts.
-std::string slicerType(const ValueSpec& spec) {
+std::string findSlicerType(const ValueSpec& spec) {
   const bool isPassed = spec.least > -infinity || !spec.choices.empty();
   return isPassed && spec.defaultValue.empty() ? "string" : spec.type;
 }
@@ -37,7 +37,7 @@ std::string slicerType(const ValueSpec& spec) {
 /// Adds a slider if the range is narrow enough for one.
 void addConstraints(pugi::xml_node parameter, const ValueSpec& spec) {
   constexpr double widest = 1e6;
-  if (slicerType(spec) == "string" || spec.defaultValue.empty() ||
+  if (findSlicerType(spec) == "string" || spec.defaultValue.empty() ||
       spec.greatest - spec.least > widest)
     return;
   pugi::xml_node constraints = parameter.append_child("constraints");
@@ -48,7 +48,7 @@ void addConstraints(pugi::xml_node parameter, const ValueSpec& spec) {
 
 void addOption(pugi::xml_node group, const Option& option) {
   const ValueSpec& spec = option.spec;
-  pugi::xml_node parameter = group.append_child(slicerType(spec).c_str());
+  pugi::xml_node parameter = group.append_child(findSlicerType(spec).c_str());
   if (!spec.image.empty())
     parameter.append_attribute("type") = spec.image.c_str();
   if (!spec.extensions.empty())

@@ -17,7 +17,7 @@ std::atomic<int> firstSignal = 0;
 std::atomic<std::int64_t> firstTime = 0; ///< time of the first signal, ms
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
-std::int64_t milliseconds() {
+std::int64_t readMilliseconds() {
   timespec now = {};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
   return std::int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000;
@@ -25,8 +25,8 @@ std::int64_t milliseconds() {
 
 /// True shortly after the first signal, since a closed terminal sends HUP twice.
 bool isRepeat() {
-  constexpr std::int64_t together = 300; // ms
-  return milliseconds() - firstTime < together;
+  constexpr std::int64_t maxDelay = 300; // ms
+  return readMilliseconds() - firstTime < maxDelay;
 }
 
 /// Writes the line to standard error, only on the first call by any thread.
@@ -53,7 +53,7 @@ void onSignal(int signal) {
   const int before = errno;
   std::atomic<bool>* const stop = stopFlag;
   if (firstSignal == 0) {
-    firstTime = milliseconds();
+    firstTime = readMilliseconds();
     firstSignal = signal;
     if (stop)
       *stop = true;

@@ -23,7 +23,7 @@ std::vector<std::string> listArguments(const OptionValues& values, const fs::pat
   return toRelativeArguments(request.arguments(), turntableSyntax().options, folder);
 }
 
-std::uint64_t digest(const auto& voxels) {
+std::uint64_t computeVoxelDigest(const auto& voxels) {
   return digestContent(asBytes(voxels)).digest;
 }
 
@@ -106,10 +106,10 @@ void TurntableManifest::setInputs(const PreparedScene& scene) {
   std::set<fs::path> files(referred.begin(), referred.end());
   files.insert(m_options.render.inputs.begin(), m_options.render.inputs.end());
   m_manifest.addInputs(files);
-  json voxels = {
-      {"volume", std::visit([](const auto& v) { return digest(v); }, scene.volume().voxels)}};
+  json voxels = {{"volume", std::visit([](const auto& v) { return computeVoxelDigest(v); },
+                                       scene.volume().voxels)}};
   if (scene.focus())
-    voxels["focus"] = digest(scene.focus()->voxels);
+    voxels["focus"] = computeVoxelDigest(scene.focus()->voxels);
   m_manifest.addRequest("voxels", voxels); // which may be in files that only a header names
   requireSame();
 }

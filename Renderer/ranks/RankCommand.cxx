@@ -17,7 +17,7 @@ namespace fenestra {
 namespace {
 
 /// Index of the first argument of a render. Throws Error (usage) for another command.
-int firstArgument(int argc, char** argv) {
+int findFirstArgument(int argc, char** argv) {
   const std::string word = argc > 1 ? argv[1] : "";
   if (word == renderSyntax.name)
     return 2;
@@ -76,7 +76,7 @@ int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::str
                            const RenderSettings& settings, RenderMonitor& monitor) {
       startRanks(options, scene, settings, monitor, ranks, scheduler);
     };
-    const int status = runRender(start, argc, argv, firstArgument(argc, argv));
+    const int status = runRender(start, argc, argv, findFirstArgument(argc, argv));
     if (!scheduler.stopWorkers(status == stoppedStatus))
       ranks.abort("stopped; other ranks do not respond", status);
     return status;
@@ -89,7 +89,7 @@ int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::str
 /// Other ranks: tiles of the image that rank 0 renders from the same arguments.
 void runOtherRank(int argc, char** argv, Ranks& ranks) {
   const std::optional<OptionValues> given =
-      parseCommandLine(renderSyntax, argc, argv, firstArgument(argc, argv));
+      parseCommandLine(renderSyntax, argc, argv, findFirstArgument(argc, argv));
   configureMachine(*given);
   std::optional<ReceivedFiles> files(ranks);
   std::string expected;

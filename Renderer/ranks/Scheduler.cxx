@@ -97,7 +97,7 @@ public:
       MessageReader reader(received->message);
       if (reader.word() == stopTag)
         return std::nullopt;
-      TileLease lease = {{}, reader.word(), reader.word()};
+      TileLease lease = {{}, reader.word(), reader.word()}; // samples, from and to
       m_tiles = lease.tiles = readTiles(reader, result.film);
       if (reader.wordsLeft() > 0)
         readPlan(reader, result);
@@ -120,8 +120,8 @@ private:
 
   static void readPlan(MessageReader& reader, RenderResult& result) {
     std::vector<float> plan(reader.wordsLeft());
-    for (float& s : plan)
-      s = std::bit_cast<float>(static_cast<std::uint32_t>(reader.word()));
+    for (float& noise : plan) // per pixel
+      noise = std::bit_cast<float>(static_cast<std::uint32_t>(reader.word()));
     result.last.plan = SamplePlan(std::move(plan));
   }
 
@@ -197,7 +197,7 @@ bool Scheduler::receiveResults() {
     Worker& worker = m_workers[static_cast<std::size_t>(received->from)];
     worker.isIdle = true;
     acceptResult(received->message);
-    worker.threads = received->message[1];
+    worker.threads = received->message[1]; // as in LeasedTiles::returnTiles
   }
   return hasReceived;
 }
@@ -207,7 +207,7 @@ void Scheduler::acceptResult(const Message& message) {
   MessageReader reader(message);
   if (reader.word() != 0)
     m_monitor->stop = true;
-  reader.word();
+  reader.word(); // the number of threads
   Counters counters;
   forEachCounter(counters, [&](std::uint64_t& count) { count = reader.word(); });
   m_added += counters;
@@ -237,8 +237,8 @@ Message Scheduler::makeLease(Worker& worker) {
   writeTiles(m_pass->take(wanted), m_result->film, message);
   const std::vector<float>& plan = m_result->last.plan.noise();
   if (!plan.empty() && !std::exchange(worker.hasPlan, true))
-    for (const float s : plan)
-      message.push_back(std::bit_cast<std::uint32_t>(s));
+    for (const float noise : plan)
+      message.push_back(std::bit_cast<std::uint32_t>(noise));
   return message;
 }
 

@@ -27,7 +27,7 @@ public:
 private:
   struct Worker {
     std::size_t threads = 1;
-    bool isIdle = false;  ///< for a lease, or the end
+    bool isIdle = false;  ///< waits for a lease or the end
     bool hasPlan = false; ///< has received RenderResult::last.plan
   };
 

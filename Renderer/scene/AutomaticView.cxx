@@ -7,7 +7,7 @@ namespace fenestra {
 namespace {
 
 constexpr double degree = pi / 180.0;
-constexpr double goldenAngle = 2.399963229728653;
+constexpr double goldenAngle = 2.399963229728653; ///< radians; steps of a Fibonacci lattice
 
 /// Directions distributed evenly over the sphere.
 std::vector<Vec3> spreadDirections(int count) {
@@ -90,6 +90,7 @@ Vec2 stepToMaximum(const std::vector<Vec2>& points, const std::vector<double>& s
   const double xx = 2.0 * fit[3], xy = fit[4], yy = 2.0 * fit[5]; // second derivatives
   const double determinant = xx * yy - xy * xy, inverse = 1.0 / determinant;
   const bool hasMaximum = determinant > 0.0 && xx + yy < 0.0;
+  // Newton's step: minus the inverse of the second derivatives, times the slope.
   const Vec2 step = hasMaximum ? Vec2(-(yy * inverse) * slope.x() + xy * inverse * slope.y(),
                                       xy * inverse * slope.x() - xx * inverse * slope.y())
                                : slope;

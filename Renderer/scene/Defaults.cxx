@@ -59,9 +59,9 @@ double otsuThreshold(const Volume& volume, double low, double high) {
     if (below == 0.0 || below == total)
       continue;
     const double gap = belowMoment / below - (moment - belowMoment) / (total - below);
-    const double between = below * (total - below) * gap * gap;
-    if (between > best) {
-      best = between;
+    const double betweenVariance = below * (total - below) * gap * gap;
+    if (betweenVariance > best) {
+      best = betweenVariance;
       threshold = i;
     }
   }

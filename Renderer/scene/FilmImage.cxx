@@ -35,6 +35,7 @@ Image makeImage(const Film& film, const Camera& camera, const Clip& clip, const 
     for (const PixelSums& pixel : film.pixels())
       plane.push_back(static_cast<float>(value(pixel)));
   };
+  // PixelSums holds the mean of the radiance, but sums of all else.
   using P = PixelSums;
   for (int c = 0; c < 3; ++c) {
     const std::string color(1, "RGB"[c]), axis(1, "XYZ"[c]);
@@ -64,6 +65,7 @@ void addExpected(Image& image, const FeatureBuffers& features) {
     image.channels[std::string("expected.normal.") + "XYZ"[c]] = features.normal[c];
   }
   Plane& depth = image.channels["expected.Z"];
+  // `hit`: probability of a collision; `depth` is multiplied by it.
   for (std::size_t i = 0; i < features.hit.size(); ++i)
     depth.push_back(features.hit[i] > 0.0F ? features.depth[i] / features.hit[i]
                                            : std::numeric_limits<float>::infinity());
@@ -78,8 +80,8 @@ Image makeFilteredImage(const FilteredImage& result, int width, int height) {
 
 ImagePlane makeImagePlane(const Camera& camera) {
   const Vec3 target = camera.pose().target;
-  const Vec2 corner = camera.toPlane(0.5, 0.5);
-  return {target + corner.x() * camera.right() + corner.y() * camera.up(),
+  const Vec2 firstPixel = camera.toPlane(0.5, 0.5);
+  return {target + firstPixel.x() * camera.right() + firstPixel.y() * camera.up(),
           camera.pixelPitch() * camera.right(), -camera.pixelPitch() * camera.up()};
 }
 

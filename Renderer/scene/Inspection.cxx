@@ -80,6 +80,7 @@ Json colorJson(const std::optional<ColorFunction>& color) {
   return knots;
 }
 
+/// As in material files, where a medium is called "matter".
 const char* kindName(const Material& material) {
   return material.kind == MaterialKind::tint ? "tint" : "matter";
 }

@@ -107,7 +107,7 @@ void PreparedScene::makeTint(const std::string& name) {
 }
 
 StageSeconds PreparedScene::seconds() const {
-  const ClipResult none, &clip = m_clip.isUpdated() ? *m_clip : none;
+  const ClipResult unused, &clip = m_clip.isUpdated() ? *m_clip : unused; // unused: 0 seconds
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
                   m_segments.seconds() + m_focus.seconds() + m_sceneTransfer.seconds() +
                   m_transfer.seconds(),

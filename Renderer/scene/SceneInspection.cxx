@@ -172,7 +172,7 @@ private:
       if (const auto displays = node.references.find("display");
           isScalarVolume(node) && displays != node.references.end())
         for (const std::string& id : displays->second)
-          m_owners.emplace(id, node.id);
+          m_displayOwners.emplace(id, node.id);
   }
 
   /// NODE and `more` members.
@@ -210,13 +210,14 @@ private:
   }
 
   Json renderingJson(const MrmlNode& node) const {
-    const auto owner = m_owners.find(node.id);
-    return nodeJson(node, {{"volume", nullIfEmpty(owner == m_owners.end() ? "" : owner->second)},
-                           {"property", nullIfEmpty(node.referenceId("volumeProperty"))},
-                           {"roi", nullIfEmpty(node.referenceId("roi"))},
-                           {"cropping", node.boolean("croppingEnabled", false)},
-                           {"followsDisplay", node.boolean("followVolumeDisplayNode", false)},
-                           {"shown", isVisible(node)}});
+    const auto owner = m_displayOwners.find(node.id);
+    return nodeJson(node,
+                    {{"volume", nullIfEmpty(owner == m_displayOwners.end() ? "" : owner->second)},
+                     {"property", nullIfEmpty(node.referenceId("volumeProperty"))},
+                     {"roi", nullIfEmpty(node.referenceId("roi"))},
+                     {"cropping", node.boolean("croppingEnabled", false)},
+                     {"followsDisplay", node.boolean("followVolumeDisplayNode", false)},
+                     {"shown", isVisible(node)}});
   }
 
   Json viewJson(const MrmlNode& node) const {
@@ -239,13 +240,14 @@ private:
 
   Json transformJson(const MrmlNode& node) {
     Json json = nodeJson(node, {{"linear", false}, {"toWorld", nullptr}});
-    const MrmlNode below{.tag = node.tag,
+    // toWorld() includes only the parents of a node, so ask for a child of the transform.
+    const MrmlNode child{.tag = node.tag,
                          .id = node.id,
                          .name = node.name,
                          .references = {{"transform", {node.id}}}};
     if (isSkipped("transforms", json))
       return json;
-    if (const auto map = tryRead([&] { return toWorld(m_scene, below); }, json["problem"])) {
+    if (const auto map = tryRead([&] { return toWorld(m_scene, child); }, json["problem"])) {
       json["linear"] = true;
       for (int row = 0; row < 3; ++row) {
         const Vec3 linear = map->linear().row(row);
@@ -279,7 +281,7 @@ private:
   Json m_segmentationProblem;
   std::optional<Grid> m_grid; ///< of the volume
   std::set<const MrmlNode*> m_used;
-  std::map<std::string, std::string> m_owners;
+  std::map<std::string, std::string> m_displayOwners; ///< volume id by display id
   Json m_unused; ///< problems that are reported elsewhere: with their nodes, or in `refused`
   Inspection m_report;
 };

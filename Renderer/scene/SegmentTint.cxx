@@ -175,10 +175,12 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& input,
                                                    isFocus[i], plan, segmentation.source());
       segments[{component, all[i].medium.priority}].push_back(i);
     }
-  const bool canGrow = isTintOnly(plan); // media stay inside their segments
-  for (auto& [key, indices] : segments)
+  const bool canSaturate = isTintOnly(plan); // media stay inside their segments
+  for (auto& [key, indices] : segments) {
+    const auto& [component, priority] = key;
     plan.parts.push_back(
-        {std::move(indices), key.second, key.first, canGrow && plan.isFocus[key.first]});
+        {std::move(indices), priority, component, canSaturate && plan.isFocus[component]});
+  }
   if (skin && skin->count > 0 && !hasSkin(all, *hasVoxels)) {
     const Material& material = materials->table.materials.at(skinMaterial);
     const std::uint8_t component =

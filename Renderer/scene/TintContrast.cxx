@@ -231,7 +231,7 @@ Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const Interf
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable,
                                  double saturation, double g) {
-  constexpr double white = 100.0, bright = 72.0, dim = 40.0;
+  constexpr double white = 100.0, bright = 72.0, dim = 40.0; // L* of the context
   ColorAdjustment start;
   start.contextSaturation = context.saturation.value_or(start.contextSaturation);
   if (context.lightness) {
@@ -259,6 +259,7 @@ ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
     result.relax();
     return result;
   };
+  // A darker focus in a bright context, and the reverse.
   const auto darker = [&](const Limits& limits) { return search(limits, -limits.shift, bright); };
   const auto lighter = [&](const Limits& limits) { return search(limits, limits.shift, dim); };
   const AdjustmentSearch dark = darker(gentle), light = lighter(gentle);

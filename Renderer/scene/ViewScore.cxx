@@ -113,7 +113,7 @@ private:
   Vec3 m_center;
   Vec3 m_half = Vec3::Zero(); ///< half extents of the cells' box, mm
   double m_rays = 0.0, m_hitCount = 0.0;
-  double m_mean = 0.0; ///< mean depth, mm
+  double m_mean = 0.0; ///< mean depth, mm; a sum until trace() ends
   std::array<Bin, std::size_t{bins} * bins> m_bins{};
 };
 
@@ -155,6 +155,7 @@ double ViewScorer::removedFraction(const FocusDepths& focus) const {
   for (const ContextCell& cell : m_context) {
     const Vec3 at = focus.toLocal(cell.center);
     const double inFront = (focus.surfaceDepth(at) - at.z()) / m_cellEdge;
+    // A cell that the surface cuts counts in part.
     removed += cell.weight * std::clamp(inFront + 0.5, 0.0, 1.0);
     all += cell.weight;
   }

@@ -250,7 +250,7 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
   const auto denoise = flags.find("denoise");
   const bool isDenoised = denoise == flags.end() || denoise->second != "off";
   if (isDenoised && flags.count("noise") > 0 && flags.count("noisetarget") == 0)
-    arguments.push_back("--noisetarget=filtered"); // noise of the displayed image
+    arguments.push_back("--noisetarget=denoised");
   const std::vector<std::string> values = SlicerExport::toArguments(flags);
   arguments.insert(arguments.end(), values.begin(), values.end());
   return arguments;

@@ -136,7 +136,7 @@ protected:
 
 private:
   vtkMRMLFenestraRenderNode* Start(vtkMRMLFenestraRenderNode* settings, bool turntable, bool wait);
-  vtkMRMLSliceLogic* GetPictureView();
+  vtkMRMLSliceLogic* GetPictureSliceLogic();
   SlicerExport::Matrix MoveOutsideVolume(vtkMRMLFenestraRenderNode* render,
                                          const SlicerExport::Matrix& ijkToRas);
   void MoveToRenderFolder(vtkMRMLFenestraRenderNode* render, vtkMRMLNode* result);

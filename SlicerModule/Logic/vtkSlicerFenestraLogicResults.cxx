@@ -51,7 +51,7 @@ vtkSmartPointer<vtkImageData> ToVtk(const SlicerExport::Image& image) {
   return copy;
 }
 
-SlicerExport::Image ReadFloats(const std::string& file) {
+SlicerExport::Image ReadFloatImage(const std::string& file) {
   SlicerExport::Image image = SlicerExport::readNrrd(file);
   if (image.type != "float" || image.size[2] != 1)
     throw SlicerExport::FileError(file + ": not an image written by Fenestra; render it again");
@@ -89,13 +89,14 @@ vtkSmartPointer<vtkImageData> ReadPictures(const std::vector<std::string>& files
   return colors->GetOutput();
 }
 
-std::string FrameFile(const std::string& folder, int frame) {
+std::string MakeFrameFileName(const std::string& folder, int frame) {
   std::string number = std::to_string(frame);
   number.insert(0, 4 - std::min<size_t>(4, number.size()), '0');
   return folder + "/frame_" + number + ".png";
 }
 
-/// Aligns the slice view with a frame as the camera saw it: rows to the right, columns down.
+/// Shows a frame in the slice view as the camera saw it. The image's j axis points down and k away
+/// from the camera; the view's y axis points up and z to the viewer.
 void AlignSliceWithFrame(vtkMRMLVolumeNode* picture, int frame, vtkMRMLSliceNode* slice) {
   double directions[3][3];
   picture->GetIJKToRASDirections(directions);
@@ -121,8 +122,9 @@ vtkMRMLLayoutNode* FindLayoutNode(vtkMRMLScene* scene) {
                 : vtkMRMLLayoutNode::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLLayoutNode"));
 }
 
-bool IsShowing(vtkMRMLSliceLogic* view, const char* picture) {
-  const char* shown = view->GetSliceCompositeNode()->GetBackgroundVolumeID();
+/// `picture`: node ID; null: none.
+bool IsShowing(vtkMRMLSliceLogic* sliceLogic, const char* picture) {
+  const char* shown = sliceLogic->GetSliceCompositeNode()->GetBackgroundVolumeID();
   return picture && shown && std::strcmp(picture, shown) == 0;
 }
 
@@ -150,10 +152,10 @@ void vtkSlicerFenestraLogic::OnMRMLSceneStartImport() {
 
 std::vector<std::string> vtkSlicerFenestraLogic::GetFrameFiles(const std::string& folder) {
   std::vector<std::string> files;
-  std::string next = FrameFile(folder, 0);
+  std::string next = MakeFrameFileName(folder, 0);
   while (std::filesystem::exists(next)) {
     files.push_back(next);
-    next = FrameFile(folder, static_cast<int>(files.size()));
+    next = MakeFrameFileName(folder, static_cast<int>(files.size()));
   }
   return files;
 }
@@ -165,8 +167,8 @@ FenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {
     result.picture = ReadPictures(frames);
     return result;
   }
-  result.radiance = ReadFloats(folder + "/radiance.nrrd");
-  result.depth = ReadFloats(folder + "/radiance-Z.nrrd");
+  result.radiance = ReadFloatImage(folder + "/radiance.nrrd");
+  result.depth = ReadFloatImage(folder + "/radiance-Z.nrrd");
   result.picture = ReadPictures({folder + "/picture.png"});
   const std::string surface = folder + "/surface.vtp";
   if (std::filesystem::exists(surface)) {
@@ -231,12 +233,13 @@ vtkMRMLVolumeNode* vtkSlicerFenestraLogic::AddVolume(Node* render, const char* c
   matrix->DeepCopy(ijkToRas.data());
   volume->SetIJKToRASMatrix(matrix);
   volume->SetAndObserveImageData(image);
+  // A transparent picture; Slicer's own display node would ignore its opacity.
   if (image->GetNumberOfScalarComponents() == 4 && image->GetScalarType() == VTK_UNSIGNED_CHAR)
     volume->SetAndObserveDisplayNodeID(
         scene->AddNewNodeByClass("vtkMRMLFenestraPictureDisplayNode")->GetID());
   volume->CreateDefaultDisplayNodes();
   if (vtkMRMLDisplayNode* display = volume->GetDisplayNode())
-    display->SetDisplayableOnlyInView(PictureViewId); // not part of the 3D views' bounds
+    display->SetDisplayableOnlyInView(PictureViewId); // excludes it from 3D views' bounds
   render->SetNodeReferenceID(role, volume->GetID());
   this->MoveToRenderFolder(render, volume);
   return volume;
@@ -257,8 +260,8 @@ void vtkSlicerFenestraLogic::AddSurface(Node* render, vtkPolyData* surface) {
   this->MoveToRenderFolder(render, model);
 }
 
-/// Matrix of the image, moved toward the camera beyond the volume, so that a slice view in its
-/// plane shows no segments and models.
+/// Moves the image's plane toward the camera until it is outside the volume. A slice view of that
+/// plane then intersects no segments or models.
 SlicerExport::Matrix
 vtkSlicerFenestraLogic::MoveOutsideVolume(Node* render, const SlicerExport::Matrix& ijkToRas) {
   auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole));
@@ -269,13 +272,14 @@ vtkSlicerFenestraLogic::MoveOutsideVolume(Node* render, const SlicerExport::Matr
   volume->GetRASBounds(bounds);
   const double diagonal =
       std::hypot(bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]);
-  const double length = std::hypot(ijkToRas[2], ijkToRas[6], ijkToRas[10]);
+  const double length = std::hypot(ijkToRas[2], ijkToRas[6], ijkToRas[10]); // of k axis
   for (int row = 0; row < 3; ++row)
     moved[4 * row + 3] -= 2.0 * diagonal / length * ijkToRas[4 * row + 2];
   return moved;
 }
 
-/// Adds frames as a volume of 1 mm pixels beside the anatomy, since they have no position in it.
+/// Adds frames as a volume, or replaces those of a resumed turntable. Each frame has its own
+/// camera, so the volume gets a place beside the anatomy, with pixels of 1 mm.
 void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
   if (auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole)))
     return picture->SetAndObserveImageData(frames);
@@ -322,7 +326,7 @@ void vtkSlicerFenestraLogic::ShowNewestVolume() {
   application->PropagateVolumeSelection();
 }
 
-vtkMRMLSliceLogic* vtkSlicerFenestraLogic::GetPictureView() {
+vtkMRMLSliceLogic* vtkSlicerFenestraLogic::GetPictureSliceLogic() {
   auto* slice = vtkMRMLSliceNode::SafeDownCast(
       this->GetMRMLScene()->GetSingletonNode("Fenestra", "vtkMRMLSliceNode"));
   vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
@@ -346,30 +350,30 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
     this->PreviousLayout = layout->GetViewArrangement();
   layout->SetViewArrangement(ResultLayout);
 
-  vtkMRMLSliceLogic* logic = this->GetPictureView();
-  if (!logic)
+  vtkMRMLSliceLogic* sliceLogic = this->GetPictureSliceLogic();
+  if (!sliceLogic)
     return;
-  vtkMRMLSliceNode* slice = logic->GetSliceNode();
-  vtkMRMLSliceCompositeNode* composite = logic->GetSliceCompositeNode();
+  vtkMRMLSliceNode* slice = sliceLogic->GetSliceNode();
+  vtkMRMLSliceCompositeNode* composite = sliceLogic->GetSliceCompositeNode();
   composite->SetBackgroundVolumeID(picture->GetID());
   composite->SetForegroundVolumeID(nullptr);
   composite->SetLabelVolumeID(nullptr);
   AlignSliceWithFrame(picture, 0, slice);
-  const int* view = slice->GetDimensions(); // otherwise the image's sides are cut off
-  logic->FitSliceToBackground(view[0], view[1]);
+  const int* viewSize = slice->GetDimensions();               // pixels
+  sliceLogic->FitSliceToBackground(viewSize[0], viewSize[1]); // else the image's sides are cut off
 }
 
 Node* vtkSlicerFenestraLogic::GetShownRender() {
   if (!this->GetMRMLScene())
     return nullptr;
   vtkMRMLLayoutNode* layout = FindLayoutNode(this->GetMRMLScene());
-  vtkMRMLSliceLogic* logic = this->GetPictureView();
-  if (!logic || !layout || layout->GetViewArrangement() != ResultLayout)
+  vtkMRMLSliceLogic* sliceLogic = this->GetPictureSliceLogic();
+  if (!sliceLogic || !layout || layout->GetViewArrangement() != ResultLayout)
     return nullptr;
   std::vector<vtkMRMLNode*> renders;
   this->GetMRMLScene()->GetNodesByClass("vtkMRMLFenestraRenderNode", renders);
   for (vtkMRMLNode* render : renders)
-    if (IsShowing(logic, render->GetNodeReferenceID(Node::PictureRole)))
+    if (IsShowing(sliceLogic, render->GetNodeReferenceID(Node::PictureRole)))
       return Node::SafeDownCast(render);
   return nullptr;
 }
@@ -380,11 +384,13 @@ void vtkSlicerFenestraLogic::ShowFrame(Node* render, int frame) {
   auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
   if (!picture || frame < 0 || frame >= GetNumberOfFrames(render))
     return;
-  vtkMRMLSliceLogic* logic = this->GetPictureView();
-  if (!logic || !IsShowing(logic, picture->GetID()))
+  vtkMRMLSliceLogic* sliceLogic = this->GetPictureSliceLogic();
+  if (!sliceLogic || !IsShowing(sliceLogic, picture->GetID())) {
     this->ShowResult(render);
-  if (logic)
-    AlignSliceWithFrame(picture, frame, logic->GetSliceNode());
+    sliceLogic = this->GetPictureSliceLogic(); // which the layout may have created just now
+  }
+  if (sliceLogic)
+    AlignSliceWithFrame(picture, frame, sliceLogic->GetSliceNode());
 }
 
 int vtkSlicerFenestraLogic::GetNumberOfFrames(Node* render) {

@@ -36,7 +36,7 @@ std::string Quote(vtkMRMLNode* node) {
   return std::string("\"") + (node->GetName() ? node->GetName() : "") + "\"";
 }
 
-std::string NrrdType(int scalarType) {
+std::string ToNrrdType(int scalarType) {
   switch (scalarType) {
   case VTK_CHAR:
   case VTK_SIGNED_CHAR:
@@ -81,7 +81,7 @@ SlicerExport::Image ShareImage(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
   vtkSmartPointer<vtkDataArray> array = image->GetPointData()->GetScalars();
   int extent[6];
   image->GetExtent(extent);
-  shared.type = NrrdType(array->GetDataType());
+  shared.type = ToNrrdType(array->GetDataType());
   shared.ijkToRas = ToMatrix(ijkToRas);
   for (int axis = 0; axis < 3; ++axis) {
     shared.size[axis] = static_cast<size_t>(extent[2 * axis + 1] - extent[2 * axis] + 1);
@@ -105,6 +105,7 @@ SlicerExport::Matrix GetWorldMatrix(vtkMRMLTransformableNode* node) {
   return ToMatrix(toWorld);
 }
 
+/// Key that changes with the voxels, their array and their position.
 std::string MakeKey(vtkObject* object, const char* id, const SlicerExport::Image& image) {
   std::ostringstream key;
   key << id << ' ' << object->GetMTime() << ' ' << image.data.get();
@@ -138,7 +139,7 @@ struct ScopedFile {
   std::filesystem::path path;
 };
 
-/// Property of the last snapshot. Most snapshots differ only in the camera.
+/// Property of the last snapshot, kept because most snapshots differ only in the camera.
 struct CachedProperty {
   vtkWeakPointer<vtkMRMLVolumePropertyNode> node;
   vtkMTimeType time = 0;
@@ -186,19 +187,19 @@ void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, SlicerExport::Contents&
   roi->GetSize(size);
   std::ostringstream text;
   text.precision(17);
-  const auto list = [&text](const char* name, std::initializer_list<double> values) {
+  const auto addList = [&text](const char* name, std::initializer_list<double> values) {
     text << ",\"" << name << "\":[";
     const char* separator = "";
     for (const double value : values)
       text << separator << value, separator = ",";
     text << ']';
   };
-  const auto at = [axes](int row, int column) { return axes->GetElement(row, column); };
+  const auto element = [axes](int row, int column) { return axes->GetElement(row, column); };
   text << R"({"markups":[{"type":"ROI","coordinateSystem":"RAS","roiType":"Box")";
-  list("center", {at(0, 3), at(1, 3), at(2, 3)});
-  list("orientation",
-       {at(0, 0), at(0, 1), at(0, 2), at(1, 0), at(1, 1), at(1, 2), at(2, 0), at(2, 1), at(2, 2)});
-  list("size", {size[0], size[1], size[2]});
+  addList("center", {element(0, 3), element(1, 3), element(2, 3)});
+  addList("orientation", {element(0, 0), element(0, 1), element(0, 2), element(1, 0), element(1, 1),
+                          element(1, 2), element(2, 0), element(2, 1), element(2, 2)});
+  addList("size", {size[0], size[1], size[2]});
   text << ",\"insideOut\":" << (roi->GetInsideOut() ? "true" : "false") << "}]}";
   contents.crop.push_back({text.str(), SlicerExport::identity});
 }
@@ -245,9 +246,10 @@ SlicerExport::Segment ToSegment(const std::string& id, vtkSegment* segment, size
 SlicerExport::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData* first) {
   vtkSmartPointer<vtkOrientedImageData> image = labels;
   if (!vtkOrientedImageDataResample::DoGeometriesMatch(labels, first)) {
+    constexpr bool linear = false, pad = true; // keeps labels outside the reference grid
     image = vtkSmartPointer<vtkOrientedImageData>::New();
     vtkOrientedImageDataResample::ResampleOrientedImageToReferenceOrientedImage(labels, first,
-                                                                                image, false, true);
+                                                                                image, linear, pad);
   }
   vtkNew<vtkMatrix4x4> ijkToRas;
   image->GetImageToWorldMatrix(ijkToRas);
@@ -330,8 +332,8 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
     key << '\n' << MakeKey(labels, "", result.layers.back().labels);
   }
   for (const std::string& name : focus) { // scripts may pass names, the panel passes ids
-    const std::string named = segmentation->GetSegmentIdBySegmentName(name);
-    const std::string id = segmentation->GetSegment(name) ? name : named;
+    const std::string idByName = segmentation->GetSegmentIdBySegmentName(name);
+    const std::string id = segmentation->GetSegment(name) ? name : idByName;
     const auto isEqual = [&id](const Segment& segment) { return segment.id == id; };
     vtkSegment* segment = segmentation->GetSegment(id);
     if (!segment)
@@ -340,6 +342,7 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
       throw UserError("The segment \"" + std::string(segment->GetName()) +
                       "\" is empty. Paint it, or choose another focus.");
   }
+  // A converted copy has new arrays in each snapshot, so its key refers to the original.
   contents.segmentationKey =
       segmentation == node->GetSegmentation()
           ? key.str()

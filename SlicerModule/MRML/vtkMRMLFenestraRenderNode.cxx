@@ -104,6 +104,7 @@ void vtkMRMLFenestraRenderNode::AllowFiles() {
   this->SetFlags(flags);
 }
 
+/// Also copies what is withheld and unknown.
 void vtkMRMLFenestraRenderNode::CopyFlags(vtkMRMLFenestraRenderNode* node) {
   if (node)
     this->Assign(node->Flags, node->Withheld, node->Unknown);
@@ -155,7 +156,8 @@ void vtkMRMLFenestraRenderNode::WriteXML(ostream& of, int indent) {
   for (const auto* all : {&this->Flags, &this->Withheld})
     for (const auto& [name, value] : *all)
       write(name, value);
-  for (const auto& [name, value] : this->Unknown) // a newer Slicer's base class may write it
+  // The base class of a newer Slicer may know the attribute and have written it.
+  for (const auto& [name, value] : this->Unknown)
     if (base.str().find(' ' + name + "=\"") == std::string::npos)
       write(name, value);
 }

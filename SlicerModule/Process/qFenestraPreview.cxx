@@ -79,7 +79,7 @@ void qFenestraPreview::readEvent(const QString& line) {
   for (const QJsonValue& file : files)
     image.files << file.toString();
   image.samples = reply["samples"].toInt();
-  image.noise = reply["noiseFiltered"].toDouble(reply["noise"].toDouble(-1.0));
+  image.noise = reply["noiseDenoised"].toDouble(reply["noise"].toDouble(-1.0));
   image.seconds = reply["seconds"].toDouble();
   image.done = reply["done"].toBool();
   emit refreshed(image);

@@ -17,7 +17,7 @@ void endWithParent() {
 }
 
 /// Last line of the renderer's messages, without the program's name.
-QString lastLine(const QString& text) {
+QString findLastLine(const QString& text) {
   QString line = text.trimmed().section('\n', -1);
   const QString name = QStringLiteral("fenestra: ");
   if (line.startsWith(name))
@@ -115,14 +115,15 @@ qFenestraOutcome qFenestraProgram::makeOutcome(int code, QProcess::ExitStatus st
   const bool crashed = status == QProcess::CrashExit; // `code` is the signal then
   if (m_killed && crashed)
     return {Kind::killed, {}, errors};
+  // SIGTERM itself ends a renderer that does not handle signals yet.
   if (crashed ? m_stopped && code == SIGTERM : code == stoppedOnRequest)
-    return {Kind::stopped, {}, errors}; // SIGTERM came before the renderer handled signals
+    return {Kind::stopped, {}, errors};
   if (crashed)
     return {Kind::failed,
             tr("The renderer ended unexpectedly. If the computer ran out of memory, render a "
                "smaller image, or crop the volume."),
             errors};
   if (code != 0)
-    return {Kind::failed, lastLine(errors), errors};
+    return {Kind::failed, findLastLine(errors), errors};
   return {Kind::done, {}, errors};
 }

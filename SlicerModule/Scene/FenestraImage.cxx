@@ -84,7 +84,7 @@ std::string getField(const std::map<std::string, std::string>& fields, const std
 
 Image parseHeader(const std::map<std::string, std::string>& fields) {
   Image image;
-  image.type = getField(fields, "type") == "float" ? "float" : getField(fields, "type");
+  image.type = getField(fields, "type");
   std::vector<std::string> sizes = splitWords(getField(fields, "sizes"));
   std::vector<std::string> directions = splitWords(getField(fields, "space directions"));
   if (sizes.size() == 4 && directions.size() == 4) {
@@ -100,9 +100,9 @@ Image parseHeader(const std::map<std::string, std::string>& fields) {
     readPoint(directions[axis], image.ijkToRas, axis);
   }
   readPoint(getField(fields, "space origin"), image.ijkToRas, 3);
-  const bool order = componentBytes(image.type) == 1 ||
-                     getField(fields, "endian") == (isLittleEndian() ? "little" : "big");
-  if (getField(fields, "encoding") != "raw" || componentBytes(image.type) == 0 || !order)
+  const bool hasNativeOrder = componentBytes(image.type) == 1 ||
+                              getField(fields, "endian") == (isLittleEndian() ? "little" : "big");
+  if (getField(fields, "encoding") != "raw" || componentBytes(image.type) == 0 || !hasNativeOrder)
     throw std::invalid_argument("needs raw encoding, a known type and this machine's byte order");
   return image;
 }

@@ -136,7 +136,8 @@ Image makeSegmentationImage(const Segmentation& segmentation) {
   return image;
 }
 
-/// Copies a layer's labels into its component of a larger image.
+/// Copies a layer's labels into its component of a larger image, whose first voxel has grid index
+/// `begin`; `out`: that component of the first voxel.
 template <typename From, typename To>
 void copyLayer(const Layer& layer, const Image& box, const std::array<long, 3>& begin, To* out) {
   const auto* in = static_cast<const From*>(layer.labels.data.get());
@@ -189,16 +190,16 @@ Image composeLayers(const std::vector<Layer>& layers) {
     return layers.front().labels;
   std::array<long, 3> begin = layers.front().begin;
   std::array<long, 3> end = begin;
-  bool bytes = true;
+  bool areBytes = true;
   for (const Layer& layer : layers)
     for (std::size_t axis = 0; axis < 3; ++axis) {
       begin[axis] = std::min(begin[axis], layer.begin[axis]);
       end[axis] =
           std::max(end[axis], layer.begin[axis] + static_cast<long>(layer.labels.size[axis]));
-      bytes = bytes && layer.labels.type == "uint8";
+      areBytes = areBytes && layer.labels.type == "uint8";
     }
   Image box = layers.front().labels;
-  box.type = bytes ? "uint8" : "int32";
+  box.type = areBytes ? "uint8" : "int32";
   box.components = layers.size();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.size[axis] = static_cast<std::size_t>(end[axis] - begin[axis]);
@@ -206,8 +207,8 @@ Image composeLayers(const std::vector<Layer>& layers) {
     for (std::size_t row = 0; row < 3; ++row)
       box.ijkToRas[4 * row + 3] += shift * box.ijkToRas[4 * row + axis];
   }
-  box.data = bytes ? composeData<std::uint8_t>(layers, box, begin)
-                   : composeData<std::int32_t>(layers, box, begin);
+  box.data = areBytes ? composeData<std::uint8_t>(layers, box, begin)
+                      : composeData<std::int32_t>(layers, box, begin);
   return box;
 }
 

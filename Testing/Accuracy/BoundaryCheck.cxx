@@ -22,7 +22,7 @@ struct Worst {
          halfVoxelSmooth = 1.0;
   Distances gap, cut;
 
-  static void widen(Distances& worst, const Distances& other) {
+  static void keepMaximum(Distances& worst, const Distances& other) {
     worst = {std::max(worst.mean, other.mean), std::max(worst.p95, other.p95),
              std::max(worst.max, other.max), std::max(worst.wideFraction, other.wideFraction)};
   }
@@ -32,8 +32,8 @@ struct Worst {
     strictFraction = std::min(strictFraction, measure.strictFraction);
     halfVoxelFraction = std::min(halfVoxelFraction, measure.halfVoxelFraction);
     halfVoxelSmooth = std::min(halfVoxelSmooth, measure.halfVoxelSmooth);
-    widen(gap, measure.gap);
-    widen(cut, measure.cut);
+    keepMaximum(gap, measure.gap);
+    keepMaximum(cut, measure.cut);
   }
 };
 
@@ -45,11 +45,12 @@ constexpr const char* header =
 
 /// Prints the end of a row: the values that Worst and BoundaryMeasure have in common.
 template <typename Values>
-void printValues(const Values& f) {
-  std::printf(",%.1f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.2f,%.2f,%.1f,%.3f\n", 100.0 * f.jumpFraction,
-              f.gap.mean, f.gap.p95, f.gap.max, 100.0 * f.gap.wideFraction, f.cut.p95, f.cut.max,
-              100.0 * f.strictFraction, 100.0 * f.halfVoxelFraction, 100.0 * f.rayJumpFraction,
-              100.0 * f.halfVoxelSmooth);
+void printValues(const Values& values) {
+  std::printf(",%.1f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.2f,%.2f,%.1f,%.3f\n",
+              100.0 * values.jumpFraction, values.gap.mean, values.gap.p95, values.gap.max,
+              100.0 * values.gap.wideFraction, values.cut.p95, values.cut.max,
+              100.0 * values.strictFraction, 100.0 * values.halfVoxelFraction,
+              100.0 * values.rayJumpFraction, 100.0 * values.halfVoxelSmooth);
 }
 
 constexpr const char* boundaries[] = {"spline", "exact"};

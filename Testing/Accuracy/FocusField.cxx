@@ -170,7 +170,7 @@ double FocusField::findFirstHit(const Vec3& origin, const Vec3& direction) const
   const double stride = step * voxel;
   // Steps end at cell faces, between which the field is smooth. A field that rises after one end of
   // a step and falls before the other may exceed 1/2 in between.
-  const double near = 1e-6 * stride;
+  const double near = 1e-6 * stride; // distance from an end at which its slope is examined
   const auto rises = [&](double from, double to) { return value(to) > from + rounding; };
   double here = value(t);
   if (t <= end && here >= 0.5)

@@ -76,7 +76,8 @@ class Wall {
 public:
   static constexpr double sigma_t = 3.0;
   static constexpr int trials = 20000;
-  static constexpr double tolerance = 4.0 * 0.5 / 141.0; ///< at most four standard errors
+  static constexpr double tolerance =
+      4.0 * 0.5 / 141.0; ///< 4 standard errors <= 0.5 / sqrt(trials)
 
   template <typename MakeTracker>
   std::pair<double, double> cross(MakeTracker&& makeTracker) const {

@@ -73,14 +73,14 @@ Row measureRender(const PreparedScene& scene, const RenderSettings& settings,
   return row;
 }
 
-void print(const std::string& scene, std::uint64_t samples, const Row& row, double march) {
+void print(const std::string& scene, std::uint64_t samples, const Row& row, double featureSeconds) {
   const double efficiency =
-      row.raw * row.render / (row.filtered * (row.render + row.filter + march));
+      row.raw * row.render / (row.filtered * (row.render + row.filter + featureSeconds));
   std::cout << std::setprecision(3) << scene << ',' << samples << ',' << row.raw << ','
             << row.filtered << ',' << row.raw / row.filtered << ',';
   if (row.estimated > 0.0)
     std::cout << row.estimated / row.filtered;
-  std::cout << ',' << efficiency << ',' << row.render << ',' << march << ',' << row.filter
+  std::cout << ',' << efficiency << ',' << row.render << ',' << featureSeconds << ',' << row.filter
             << std::endl;
 }
 
@@ -110,16 +110,16 @@ void measureScene(const SceneCase& sceneCase, const OptionValues& values,
   options.scene.features = true;
   const PreparedScene scene(options.scene);
   RenderSettings settings = makeSettings(options, scene.background());
-  const Reference reference = findReference(sceneCase, scene, settings, wanted);
-  double march = 0.0;
-  timeWork([&] { return computeFeatures(scene.view()); }, march);
+  const Reference reference = getOrRenderReference(sceneCase, scene, settings, wanted);
+  double featureSeconds = 0.0;
+  timeWork([&] { return computeFeatures(scene.view()); }, featureSeconds);
   for (const std::uint64_t count : parseCounts(values)) {
     settings.samples = count;
     const std::uint64_t seeds = count < 1024 ? values.integer("seeds").value_or(3) : 1;
     Row mean;
     for (settings.seed = 1; settings.seed <= seeds; ++settings.seed)
       mean.add(measureRender(scene, settings, reference.image), 1.0 / static_cast<double>(seeds));
-    print(sceneCase.name, count, mean, march);
+    print(sceneCase.name, count, mean, featureSeconds);
   }
 }
 

@@ -100,7 +100,7 @@ std::vector<CurveRecord> measureScene(const SceneCase& sceneCase, const Options&
   const PreparedScene scene(wanted.scene);
   RenderSettings settings = makeSettings(wanted, scene.background());
   settings.threads = options.threads;
-  const Reference reference = findReference(sceneCase, scene, settings, options.reference);
+  const Reference reference = getOrRenderReference(sceneCase, scene, settings, options.reference);
   std::vector<CurveRecord> curves;
   for (const Mode* mode : options.modes) {
     curves.push_back({sceneCase.name, mode->name, reference.source, reference.relMse,

@@ -43,13 +43,13 @@ std::vector<std::int16_t> makeBody(std::int64_t edge) {
     state ^= state << 17;
     return static_cast<double>(state % amplitude) - static_cast<double>(amplitude / 2);
   };
-  const auto at = [edge](std::int64_t i) {
+  const auto toSignedUnit = [edge](std::int64_t i) {
     return 2.0 * static_cast<double>(i) / static_cast<double>(edge) - 1.0;
   };
   for (std::int64_t z = 0; z < edge; ++z)
     for (std::int64_t y = 0; y < edge; ++y)
       for (std::int64_t x = 0; x < edge; ++x) {
-        const Vec3 p(at(x), at(y), at(z));
+        const Vec3 p(toSignedUnit(x), toSignedUnit(y), toSignedUnit(z));
         const double radius = p.x() * p.x() + 1.4 * p.y() * p.y();
         const double lung = std::pow(std::abs(p.x()) - 0.3, 2) + p.y() * p.y();
         const double along = std::fmod(std::abs(5.0 * p.z() + p.x()), 1.0);
@@ -125,19 +125,19 @@ void print(const std::string& name, const Cost& cost) {
 /// Compares reading by ITK with the complete program, alternately.
 void compare(const std::string& self, const Path& folder, const std::string& name, int runs) {
   const std::string file = folder / name;
-  Cost bare;
-  Cost first;
+  Cost itkCost;
+  Cost fenestraCost;
   for (int run = 0; run < runs; ++run) {
-    bare.keepMinimum(measureCost({self, "--bare", file}));
-    first.keepMinimum(
+    itkCost.keepMinimum(measureCost({self, "--bare", file}));
+    fenestraCost.keepMinimum(
         measureCost({FENESTRA_EXECUTABLE, file, "--clip", "none", "--size", "64x64", "--samples",
                      "1", "--progress", "none", "--output", folder / "image.exr"}));
   }
-  print("ITK " + name, bare);
-  print("Fenestra " + name, first);
-  std::cout << std::setprecision(2) << "  " << first.seconds / bare.seconds
-            << " x the time of ITK alone (CPU: " << first.cpuSeconds / bare.cpuSeconds << " x), "
-            << first.seconds - bare.seconds << " s more\n";
+  print("ITK " + name, itkCost);
+  print("Fenestra " + name, fenestraCost);
+  std::cout << std::setprecision(2) << "  " << fenestraCost.seconds / itkCost.seconds
+            << " x the time of ITK alone (CPU: " << fenestraCost.cpuSeconds / itkCost.cpuSeconds
+            << " x), " << fenestraCost.seconds - itkCost.seconds << " s more\n";
 }
 
 void measure(const std::string& self, std::int64_t edge, int runs) {

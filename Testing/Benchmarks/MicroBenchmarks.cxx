@@ -55,8 +55,8 @@ struct Probe {
   const LargeArray<Voxel>& voxels = std::get<LargeArray<Voxel>>(subject.scene.volume().voxels);
   Field<Voxel> field{subject.scene.volume().grid, voxels};
   Medium<Voxel> medium{subject.scene.volume().grid, voxels, subject.scene.transfer()};
-  SceneView parts = subject.scene.view();
-  Tracker<Voxel> tracker{subject.domain(), medium, parts.majorants, parts.clip};
+  SceneView view = subject.scene.view();
+  Tracker<Voxel> tracker{subject.domain(), medium, view.majorants, view.clip};
   std::vector<Ray> cameraRays;
   std::vector<Vec3> collisions; ///< world; first collisions of camera rays
   std::vector<Vec3> inside;     ///< the collisions in index space
@@ -69,9 +69,9 @@ struct Probe {
     const Vec3 size = subject.scene.volume().grid.size.cast<double>();
     while (collisions.size() < count) {
       const Vec2 pixel = imageSize * random.uniform2();
-      const Ray ray = parts.camera.makeRay(pixel.x(), pixel.y());
+      const Ray ray = view.camera.makeRay(pixel.x(), pixel.y());
       cameraRays.push_back(ray);
-      const double t = tracker.sampleCollision(ray, visibleInterval(parts.clip, ray),
+      const double t = tracker.sampleCollision(ray, visibleInterval(view.clip, ray),
                                                random.uniform2(), random, counters);
       if (t < infinity) {
         collisions.push_back(ray.at(t));
@@ -103,7 +103,7 @@ void addTracking(Probe& p) {
   };
   add("collision/camera ray", p.cameraRays.size(), [&p](std::size_t i) {
     const Ray& ray = p.cameraRays[i];
-    return p.tracker.sampleCollision(ray, visibleInterval(p.parts.clip, ray), p.random.uniform2(),
+    return p.tracker.sampleCollision(ray, visibleInterval(p.view.clip, ray), p.random.uniform2(),
                                      p.random, p.counters);
   });
   add("collision/scattered ray", Probe::count, [&p](std::size_t i) {
@@ -123,7 +123,7 @@ void addTracking(Probe& p) {
   add("gradient/collisions", Probe::count,
       [&p](std::size_t i) { return p.field.gradient(p.inside[i]); });
   add("clip test/collisions", Probe::count,
-      [&p](std::size_t i) { return clipWeight(p.parts.clip, p.collisions[i]); });
+      [&p](std::size_t i) { return clipWeight(p.view.clip, p.collisions[i]); });
 }
 
 void addFirstPass(const Subject& subject) {

@@ -7,7 +7,7 @@
 namespace fenestra::benchmarks {
 namespace {
 
-Film renderProduct(const SceneView& scene, const RenderSettings& settings) {
+Film renderByFenestra(const SceneView& scene, const RenderSettings& settings) {
   RenderMonitor monitor;
   return render(scene, settings, monitor).film;
 }
@@ -28,18 +28,18 @@ Film renderMarching(const SceneView& scene, const RenderSettings& settings, doub
 constexpr Mode table[] = {
     {"product", "the default of `fenestra`",
      [](const SceneView& scene, RenderSettings settings) {
-       return renderProduct(scene, settings);
+       return renderByFenestra(scene, settings);
      }},
     {"adaptive",
      "like product, with a noise target: after a pilot of 16 samples, noisier pixels get more",
      [](const SceneView& scene, RenderSettings settings) {
        settings.noise = 1e-6; // too low to be met: the sample count ends the render
-       return renderProduct(scene, settings);
+       return renderByFenestra(scene, settings);
      }},
     {"scalar", "the scalar integrator: null collisions in a majorant grid, independent samples",
      [](const SceneView& scene, RenderSettings settings) {
        settings.integrator = Integrator::scalar;
-       return renderProduct(scene, settings);
+       return renderByFenestra(scene, settings);
      }},
     {"global", "like scalar, with one majorant for the volume",
      [](const SceneView& scene, RenderSettings settings) { return renderGlobal(scene, settings); }},

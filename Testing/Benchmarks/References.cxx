@@ -28,16 +28,16 @@ std::vector<float>& channel(Image& image, const std::string& name) {
   return image.channels.at(name);
 }
 
-/// Adds one more image to the mean of `parts` images of equal quality.
-void addPart(Image& sum, const Image& part, double parts) {
+/// Updates `mean`, of `parts` images with equal sample counts, by one more image.
+void addPart(Image& mean, const Image& part, double parts) {
   for (const char* name : colors) {
-    std::vector<float>& mean = channel(sum, name);
-    std::vector<float>& error = channel(sum, std::string("error.") + name);
+    std::vector<float>& color = channel(mean, name);
+    std::vector<float>& error = channel(mean, std::string("error.") + name);
     const std::vector<float>& other = *part.find(name);
     const std::vector<float>& otherError = *part.find(std::string("error.") + name);
-    for (std::size_t i = 0; i < mean.size(); ++i) {
+    for (std::size_t i = 0; i < color.size(); ++i) {
       const auto mix = [&](double a, double b) { return (parts * a + b) / (parts + 1.0); };
-      mean[i] = static_cast<float>(mix(mean[i], other[i]));
+      color[i] = static_cast<float>(mix(color[i], other[i]));
       error[i] = static_cast<float>(std::hypot(parts * error[i], otherError[i]) / (parts + 1.0));
     }
   }
@@ -48,21 +48,22 @@ void addPart(Image& sum, const Image& part, double parts) {
 template <typename RenderPart>
 Image accumulate(const ReferenceSettings& wanted, std::uint64_t samples, RenderPart&& renderPart) {
   const Stopwatch watch;
-  Image sum = renderPart(firstReferenceSeed);
-  sum.channels.erase("samples.N");
+  Image mean = renderPart(firstReferenceSeed);
+  mean.channels.erase("samples.N");
   const auto isEnough = [&](std::uint64_t parts) {
-    return wanted.samples > 0 ? parts * samples >= wanted.samples
-                              : watch.seconds() >= wanted.seconds ||
-                                    Reference(sum, "").relMse <= wanted.noise * wanted.noise;
+    if (wanted.samples > 0)
+      return parts * samples >= wanted.samples;
+    const bool isLate = watch.seconds() >= wanted.seconds;
+    return isLate || Reference(mean, "").relMse <= wanted.noise * wanted.noise;
   };
   for (std::uint64_t parts = 1; !isEnough(parts); ++parts) {
-    addPart(sum, renderPart(firstReferenceSeed + parts), static_cast<double>(parts));
+    addPart(mean, renderPart(firstReferenceSeed + parts), static_cast<double>(parts));
   }
-  return sum;
+  return mean;
 }
 
-Image renderByProduct(const PreparedScene& scene, RenderSettings settings,
-                      const ReferenceSettings& wanted) {
+Image renderByFenestra(const PreparedScene& scene, RenderSettings settings,
+                       const ReferenceSettings& wanted) {
   settings.samples = 16;
   return accumulate(wanted, settings.samples, [&](std::uint64_t seed) {
     settings.seed = seed;
@@ -78,17 +79,17 @@ std::vector<Light> readPresetLights(const std::string& name) {
 
 Image renderByOracle(const RenderOptions& options, const PreparedScene& scene,
                      const RenderSettings& settings, const ReferenceSettings& wanted) {
-  const SceneView parts = scene.view();
-  if (!std::holds_alternative<ClipNone>(parts.clip))
+  const SceneView view = scene.view();
+  if (!std::holds_alternative<ClipNone>(view.clip))
     throw inputError("scenes.txt", "requests an oracle reference for a clip; use product");
-  const oracle::OracleScene subject{.volume = parts.volume,
-                                    .transfer = parts.transfer,
+  const oracle::OracleScene subject{.volume = view.volume,
+                                    .transfer = view.transfer,
                                     .lights = readPresetLights(options.scene.lights),
-                                    .pose = parts.camera.pose(),
-                                    .width = parts.camera.width(),
-                                    .height = parts.camera.height(),
-                                    .crop = parts.crop ? std::optional(parts.crop->boxToWorld)
-                                                       : std::nullopt,
+                                    .pose = view.camera.pose(),
+                                    .width = view.camera.width(),
+                                    .height = view.camera.height(),
+                                    .crop = view.crop ? std::optional(view.crop->boxToWorld)
+                                                      : std::nullopt,
                                     .background = settings.path.background};
   constexpr std::uint64_t samples = 4;
   return accumulate(wanted, samples, [&](std::uint64_t seed) {
@@ -102,12 +103,13 @@ std::optional<Image> readIfExists(const std::filesystem::path& path) {
   return readImage(path);
 }
 
-std::optional<Reference> findIndependent(const SceneCase& sceneCase, const PreparedScene& scene) {
-  if (sceneCase.source != ReferenceSource::independent)
+/// Reference of another renderer; empty if missing or of another size.
+std::optional<Reference> findExternal(const SceneCase& sceneCase, const PreparedScene& scene) {
+  if (sceneCase.source != ReferenceSource::external)
     return std::nullopt;
-  const std::string file = sceneCase.independent.string();
+  const std::string file = sceneCase.external.string();
   std::optional<Image> image = readIfExists(file + "_best.exr");
-  const std::optional<Image> errors = readIfExists(file + "_best_se.exr");
+  const std::optional<Image> errors = readIfExists(file + "_best_se.exr"); // standard errors
   if (!image || !errors || image->width != scene.camera().width() ||
       image->height != scene.camera().height())
     return std::nullopt;
@@ -132,33 +134,34 @@ std::string makeCacheKey(const SceneCase& sceneCase, const PreparedScene& scene,
 
 Reference::Reference(Image imageIn, std::string sourceIn)
     : image(std::move(imageIn)), source(std::move(sourceIn)) {
+  constexpr double relMseEpsilon = 0.01; // as in Comparison::relMse
   double sum = 0.0;
   std::size_t count = 0;
   for (const char* name : colors) {
     const std::vector<float>& means = *image.find(name);
     const std::vector<float>& errors = *image.find(std::string("error.") + name);
     for (std::size_t i = 0; i < means.size(); ++i)
-      sum += std::pow(errors[i], 2.0) / (std::pow(means[i], 2.0) + 0.01);
+      sum += std::pow(errors[i], 2.0) / (std::pow(means[i], 2.0) + relMseEpsilon);
     count += means.size();
   }
   relMse = sum / static_cast<double>(count);
 }
 
-Reference findReference(const SceneCase& sceneCase, const PreparedScene& scene,
-                        const RenderSettings& settings, const ReferenceSettings& wanted) {
-  if (std::optional<Reference> independent = findIndependent(sceneCase, scene))
-    return *std::move(independent);
+Reference getOrRenderReference(const SceneCase& sceneCase, const PreparedScene& scene,
+                               const RenderSettings& settings, const ReferenceSettings& wanted) {
+  if (std::optional<Reference> external = findExternal(sceneCase, scene))
+    return *std::move(external);
   const std::string source = sceneCase.source == ReferenceSource::oracle ? "oracle" : "product";
   const std::filesystem::path path = wanted.folder / (sceneCase.name + ".exr");
-  const std::string command = makeCacheKey(sceneCase, scene, wanted);
+  const std::string cacheKey = makeCacheKey(sceneCase, scene, wanted);
   if (std::optional<Image> cached = readIfExists(path))
-    if (cached->header["command"] == command && cached->header["maker"] == source)
+    if (cached->header["command"] == cacheKey && cached->header["maker"] == source)
       return Reference(*std::move(cached), source);
   Image image = sceneCase.source == ReferenceSource::oracle
                     ? renderByOracle(sceneCase.options(), scene, settings, wanted)
-                    : renderByProduct(scene, settings, wanted);
-  image.header["command"] = command;
-  image.header["maker"] = source;
+                    : renderByFenestra(scene, settings, wanted);
+  image.header["command"] = cacheKey;
+  image.header["maker"] = source; // the renderer
   std::filesystem::create_directories(wanted.folder);
   writeImage(image, makeImagePlane(scene.camera()), path);
   return Reference(std::move(image), source);

@@ -16,19 +16,19 @@ struct ReferenceSettings {
 };
 
 struct Reference {
-  Image image; ///< R, G, B and their standard errors
-  std::string source;
+  Image image;         ///< R, G, B and their standard errors
+  std::string source;  ///< "independent" (another renderer), "oracle" or "product" (Fenestra)
   double relMse = 0.0; ///< of the reference, from its standard errors
 
   Reference(Image imageIn, std::string sourceIn);
 };
 
-/// Returns the scene's independent reference if there is one of the same size, else the cached
+/// Returns the scene's external reference if there is one of the same size, else the cached
 /// reference, else a new one, which is cached. A cached reference stores its command line in the
-/// header. It is rebuilt if that line has changed, but not if files named in it have changed.
-/// Throws Error.
-Reference findReference(const SceneCase& sceneCase, const PreparedScene& scene,
-                        const RenderSettings& settings, const ReferenceSettings& wanted);
+/// header. It is rendered again if that line has changed, but not if files named in it have
+/// changed. Throws Error.
+Reference getOrRenderReference(const SceneCase& sceneCase, const PreparedScene& scene,
+                               const RenderSettings& settings, const ReferenceSettings& wanted);
 
 /// Image with R, G, B and their standard errors.
 Image toImage(const Film& film, const PreparedScene& scene);

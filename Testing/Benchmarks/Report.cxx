@@ -96,7 +96,8 @@ std::string makeBiasCell(const CurveRecord& curve) {
   return out.str();
 }
 
-/// Writes a table with a row per scene: `first` for one of its curves, then `cell` for each curve.
+/// Writes a table with a row per scene: the scene, `first` for one of its curves under the heading
+/// `second`, then `cell` for each curve.
 template <typename First, typename Cell>
 void writeTable(std::ostream& out, const std::vector<CurveRecord>& curves, const char* second,
                 First&& first, Cell&& cell) {
@@ -136,7 +137,7 @@ void writePeers(std::ostream& out, const std::vector<CurveRecord>& curves) {
          "renders spectrally.\n\n"
          "| renderer | S1 | S2 | S2hi |\n|---|---|---|---|\n| Fenestra (above) |";
   for (const char* scene : {"S1", "S2", "S2hi"}) {
-    const CurveRecord* curve = find(curves, scene, "product");
+    const CurveRecord* curve = find(curves, scene, "product"); // Fenestra
     out << ' ' << (curve ? makeEfficiencyCell(*curve) : "–") << " |";
   }
   for (const Peer& peer : peers) {

@@ -68,9 +68,9 @@ private:
 
   ReferenceSource parseSource(const std::string& word) const {
     const std::map<std::string, ReferenceSource> sources = {
-        {"independent", ReferenceSource::independent},
+        {"independent", ReferenceSource::external},
         {"oracle", ReferenceSource::oracle},
-        {"product", ReferenceSource::product}};
+        {"product", ReferenceSource::fenestra}};
     const auto found = sources.find(word);
     if (found == sources.end())
       throw inputError(m_path.string(),
@@ -91,7 +91,7 @@ private:
       }
       const Arguments read = readArguments(path);
       scene.arguments.insert(scene.arguments.end(), read.begin(), read.end());
-      scene.independent = std::filesystem::path(path).replace_extension();
+      scene.external = std::filesystem::path(path).replace_extension();
     }
     return scene;
   }

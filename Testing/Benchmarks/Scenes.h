@@ -15,15 +15,16 @@ struct Folders {
 };
 
 enum class ReferenceSource {
-  independent, ///< other renderers: FILE_best.exr and FILE_best_se.exr next to FILE.arguments
-  oracle,      ///< Testing/Oracle; for scenes without a clip
-  product,     ///< the renderer with other seeds, for scenes that would take the oracle hours
+  external, ///< other renderers ("independent" in the table): FILE_best.exr and FILE_best_se.exr
+            ///< next to FILE.arguments
+  oracle,   ///< Testing/Oracle; for scenes without a clip
+  fenestra, ///< Fenestra with other seeds ("product"), for scenes that would take the oracle hours
 };
 
 struct SceneCase {
   std::string name;
-  ReferenceSource source = ReferenceSource::product;
-  std::filesystem::path independent;  ///< FILE of an independent reference
+  ReferenceSource source = ReferenceSource::fenestra;
+  std::filesystem::path external;     ///< FILE of an external reference
   std::vector<std::string> arguments; ///< arguments of `fenestra`
   std::string missing;                ///< a required file that does not exist, or empty
 

@@ -21,14 +21,14 @@ protected:
     return renderVolume(all);
   }
   /// Error of a command with checkpoint a.film and these arguments.
-  ExpectedError refusal(const std::string& name, const Arguments& arguments,
-                        const std::string& text, int status = 2) const {
+  ExpectedError makeError(const std::string& name, const Arguments& arguments,
+                          const std::string& text, int status = 2) const {
     Arguments all = {"volume.nrrd", "--checkpoint", "a.film", "--output", "a.exr"};
     all.insert(all.end(), arguments.begin(), arguments.end());
     return {name, all, status, text};
   }
 
-  const Arguments small = {"--size", "16x16", "--samples", "2"};
+  const Arguments sizeOfCheckpoint = {"--size", "16x16", "--samples", "2"};
 };
 
 TEST_F(CheckpointCommand, MoreSamplesResumeFromTheCheckpoint) {
@@ -75,24 +75,24 @@ TEST_F(CheckpointCommand, StoppedRenderResumesBitIdentically) {
 TEST_F(CheckpointCommand, CheckpointOfAnotherRenderIsRejected) {
   folder.write("other.json", R"({"extinction": [[0, 0], [64, 1]], "albedo": [[0, 1, 1, 1]]})");
   const auto addSize = [this](Arguments arguments) {
-    arguments.insert(arguments.end(), small.begin(), small.end());
+    arguments.insert(arguments.end(), sizeOfCheckpoint.begin(), sizeOfCheckpoint.end());
     return arguments;
   };
-  std::vector<ExpectedError> refusals = {
-      refusal("seed", addSize({"--seed", "3"}), "--seed was not given, is 3"),
-      refusal("size", {"--size", "16x17", "--samples", "2"}, "--size was 16x16, is 16x17"),
-      refusal("view", addSize({"--view", "left"}), "--view was not given, is left"),
-      refusal("transfer", addSize({"--transfer", "other.json"}),
-              "--transfer was not given, is other"),
-      refusal("bounces", addSize({"--bounces", "1"}), "--bounces"),
-      refusal("sampling", addSize({"--sampling", "independent"}), "--sampling"),
-      refusal("fewer samples", {"--size", "16x16", "--samples", "1"}, "has up to 2 samples"),
-      refusal("turntable", {}, "--checkpoint: not needed"),
+  std::vector<ExpectedError> errors = {
+      makeError("seed", addSize({"--seed", "3"}), "--seed was not given, is 3"),
+      makeError("size", {"--size", "16x17", "--samples", "2"}, "--size was 16x16, is 16x17"),
+      makeError("view", addSize({"--view", "left"}), "--view was not given, is left"),
+      makeError("transfer", addSize({"--transfer", "other.json"}),
+                "--transfer was not given, is other"),
+      makeError("bounces", addSize({"--bounces", "1"}), "--bounces"),
+      makeError("sampling", addSize({"--sampling", "independent"}), "--sampling"),
+      makeError("fewer samples", {"--size", "16x16", "--samples", "1"}, "has up to 2 samples"),
+      makeError("turntable", {}, "--checkpoint: not needed"),
   };
-  refusals.back().arguments.insert(refusals.back().arguments.begin(), "turntable");
-  for (ExpectedError& one : refusals)
+  errors.back().arguments.insert(errors.back().arguments.begin(), "turntable");
+  for (ExpectedError& one : errors)
     one.arguments.insert(one.arguments.end(), {"--progress", "xml"});
-  expectErrors(refusals, folder.path());
+  expectErrors(errors, folder.path());
 }
 
 TEST_F(CheckpointCommand, ChangedInputsAreRejected) {
@@ -104,7 +104,7 @@ TEST_F(CheckpointCommand, ChangedInputsAreRejected) {
   EXPECT_NE(outcome.err.find("volume.nrrd has changed"), std::string::npos) << outcome.err;
 }
 
-TEST_F(CheckpointCommand, RawNoiseTargetCannotBeAddedAfterThePilot) {
+TEST_F(CheckpointCommand, RawNoiseTargetCannotBeAddedAfter16Samples) {
   const Arguments arguments = {"volume.nrrd",  "--size", "16x16",    "--samples", "20",
                                "--checkpoint", "b.film", "--output", "b.exr"};
   ASSERT_EQ(run(arguments, folder.path()).status, 0);

@@ -41,7 +41,7 @@ protected:
     EXPECT_GT(sum, 0.0);
   }
 
-  Arguments render(const Arguments& options) const {
+  Arguments makeArguments(const Arguments& options) const {
     Arguments all = {"volume.nrrd", "--segmentation", "segments.seg.nrrd", "--output", "new.exr",
                      "--layers",    "color"};
     all.insert(all.end(), options.begin(), options.end());
@@ -56,14 +56,14 @@ TEST_F(Compatibility, StoredSceneRendersTheSameImage) {
 }
 
 TEST_F(Compatibility, PresetFileRendersTheSameImage) {
-  expectImage(render({"--preset", "preset.json", "--size", "16x16", "--samples", "8"}), "new.exr",
-              "preset.exr");
+  expectImage(makeArguments({"--preset", "preset.json", "--size", "16x16", "--samples", "8"}),
+              "new.exr", "preset.exr");
 }
 
 TEST_F(Compatibility, FormerPresetNameRendersTheSameImage) {
   for (const char* name : {"brain-tumour", "brain-tumor"})
-    expectImage(render({"--preset", name, "--scale", "5", "--labelsmoothing", "0.5", "--size",
-                        "16x16", "--samples", "8"}),
+    expectImage(makeArguments({"--preset", name, "--scale", "5", "--labelsmoothing", "0.5",
+                               "--size", "16x16", "--samples", "8"}),
                 "new.exr", "tumor.exr");
 }
 
@@ -87,20 +87,20 @@ TEST_F(Compatibility, CheckpointIsResumed) {
     const Arguments options = {"--focus",    "Liver",  "--size",       "8x8",
                                "--samples",  "16",     "--transfer",   "transfer.json",
                                "--sampling", sampling, "--checkpoint", "render.film"};
-    expectImage(render(options), "new.exr", "resumed.exr");
+    expectImage(makeArguments(options), "new.exr", "resumed.exr");
     EXPECT_NE(readBytes(folder / "render.film"), checkpoint);
   }
 }
 
 TEST_F(Compatibility, FormerValuesOfOptionsAreAccepted) {
-  const auto stats = [&](const char* target) {
+  const auto renderStats = [&](const char* target) {
     const Outcome outcome = run({"volume.nrrd", "--size", "8x8", "--noise", "0.5", "--noisetarget",
                                  target, "--output", "new.png", "--stats", "stats.json"},
                                 folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return nlohmann::json::parse(readBytes(folder / "stats.json"));
   };
-  const nlohmann::json old = stats("filtered"), now = stats("denoised");
+  const nlohmann::json old = renderStats("filtered"), now = renderStats("denoised");
   EXPECT_EQ(old["samplesPerPixel"], now["samplesPerPixel"]);
   EXPECT_EQ(now["noiseFiltered"], now["noiseDenoised"]);
   EXPECT_LE(now["noiseDenoised"], 0.5);

@@ -20,7 +20,7 @@ const std::set<std::string> libraries = {
 
 class VersionCommand : public ::testing::Test {
 protected:
-  Json version() const {
+  Json readVersion() const {
     const Outcome outcome = run({"--version", "--json"}, folder.path());
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
@@ -31,7 +31,7 @@ protected:
 };
 
 TEST_F(VersionCommand, JsonHasTheDocumentedKeysAndForms) {
-  const Json all = version();
+  const Json all = readVersion();
   std::vector<std::string> keys;
   for (const auto& [key, value] : all.items())
     keys.push_back(key);
@@ -52,7 +52,7 @@ TEST_F(VersionCommand, JsonHasTheDocumentedKeysAndForms) {
 
 TEST_F(VersionCommand, JsonHasAVersionOfEachLibrary) {
   std::set<std::string> names;
-  const Json all = version();
+  const Json all = readVersion();
   for (const auto& [name, version] : all["libraries"].items()) {
     names.insert(name);
     EXPECT_TRUE(std::regex_match(version.get<std::string>(), std::regex("[0-9]+(\\.[0-9]+)+.*")))
@@ -62,12 +62,12 @@ TEST_F(VersionCommand, JsonHasAVersionOfEachLibrary) {
 }
 
 TEST_F(VersionCommand, InstructionSetIsThatOfARender) {
-  const std::vector<std::string> sets = version()["instructionSets"];
+  const std::vector<std::string> sets = readVersion()["instructionSets"];
   const char* const pinned = std::getenv("FENESTRA_INSTRUCTIONS");
-  EXPECT_EQ(version()["instructions"], pinned ? pinned : sets.front());
+  EXPECT_EQ(readVersion()["instructions"], pinned ? pinned : sets.front());
   const std::string before = pinned ? pinned : "";
   ::setenv("FENESTRA_INSTRUCTIONS", sets.back().c_str(), 1);
-  EXPECT_EQ(version()["instructions"], sets.back());
+  EXPECT_EQ(readVersion()["instructions"], sets.back());
   ::setenv("FENESTRA_INSTRUCTIONS", "ABACUS", 1);
   expectErrors({{"unknown set", {"--version"}, 2, "ABACUS"}}, folder.path());
   pinned ? ::setenv("FENESTRA_INSTRUCTIONS", before.c_str(), 1)
@@ -75,7 +75,7 @@ TEST_F(VersionCommand, InstructionSetIsThatOfARender) {
 }
 
 TEST_F(VersionCommand, TextHasTheFactsOfTheJson) {
-  const Json all = version();
+  const Json all = readVersion();
   const std::string text = run({"--version"}, folder.path()).out;
   EXPECT_TRUE(text.starts_with("fenestra " + all["version"].get<std::string>() + "\n")) << text;
   for (const char* key : {"commit", "date", "compiler", "system", "instructions", "license"})

@@ -259,7 +259,7 @@ TEST_F(FilesCommand, RejectsUnwritableOutputs) {
       folder.path());
 }
 
-/// Uncompressed TIFF of one gray pixel.
+/// Uncompressed TIFF of one gray pixel, with the tags of TIFF 6.0; 274 is Orientation.
 std::string makeTiff(std::uint16_t orientation) {
   const auto bytes = [](std::uint32_t value, int count) {
     std::string text;

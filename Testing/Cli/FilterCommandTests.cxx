@@ -24,7 +24,7 @@ protected:
     const Outcome outcome = runKnee(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
   }
-  nlohmann::json stats() const { return nlohmann::json::parse(readBytes(folder / "s.json")); }
+  nlohmann::json readStats() const { return nlohmann::json::parse(readBytes(folder / "s.json")); }
 
   TemporaryFolder folder;
 };
@@ -71,8 +71,8 @@ TEST_F(FilterCommand, AutoDenoisesDisplayImagesAndRecordsIt) {
   const Image exr = readImage(folder / "a.exr");
   EXPECT_FALSE(channelNames(exr).contains("denoised.R"));
   EXPECT_FALSE(exr.header.contains("filter"));
-  EXPECT_GT(stats()["noiseFiltered"], 0.0);
-  EXPECT_LT(stats()["noiseFiltered"], stats()["noise"]);
+  EXPECT_GT(readStats()["noiseDenoised"], 0.0);
+  EXPECT_LT(readStats()["noiseDenoised"], readStats()["noise"]);
 
   Arguments off = all;
   off.insert(off.end(), {"--denoise", "off"});
@@ -80,8 +80,8 @@ TEST_F(FilterCommand, AutoDenoisesDisplayImagesAndRecordsIt) {
   EXPECT_EQ(readBytes(folder / "a.png").find("denoised by local linear regression"),
             std::string::npos);
   EXPECT_NE(readBytes(folder / "a.png"), png);
-  EXPECT_FALSE(stats().contains("noiseFiltered"));
-  EXPECT_EQ(stats()["seconds"]["features"], 0.0);
+  EXPECT_FALSE(readStats().contains("noiseDenoised"));
+  EXPECT_EQ(readStats()["seconds"]["features"], 0.0);
 }
 
 TEST_F(FilterCommand, OneSampleIsDenoisedWithoutAnErrorEstimate) {
@@ -89,26 +89,26 @@ TEST_F(FilterCommand, OneSampleIsDenoisedWithoutAnErrorEstimate) {
   const Image image = readImage(folder / "a.exr");
   EXPECT_TRUE(image.find("denoised.R"));
   EXPECT_FALSE(image.find("denoised.error.R"));
-  EXPECT_TRUE(stats()["noiseFiltered"].is_null());
+  EXPECT_TRUE(readStats()["noiseDenoised"].is_null());
 }
 
 TEST_F(FilterCommand, NoiseLimitsTheDenoisedNoiseIfAllOutputsAreDisplayImages) {
   const Arguments noise = {"--noise", "0.15", "--stats", "s.json", "--output", "a.png"};
   render(noise);
-  const std::uint64_t few = stats()["samplesPerPixel"]["max"];
-  EXPECT_EQ(stats()["samplesPerPixel"]["min"], few);
+  const std::uint64_t few = readStats()["samplesPerPixel"]["max"];
+  EXPECT_EQ(readStats()["samplesPerPixel"]["min"], few);
   EXPECT_TRUE(few == 4 || few == 8 || few == 16) << few;
-  EXPECT_LE(stats()["noiseFiltered"], 0.15);
-  EXPECT_GT(stats()["noise"], 0.15);
+  EXPECT_LE(readStats()["noiseDenoised"], 0.15);
+  EXPECT_GT(readStats()["noise"], 0.15);
 
   Arguments raw = noise;
   raw.insert(raw.end(), {"--output", "a.exr"});
   render(raw);
-  EXPECT_LE(stats()["noise"], 0.15);
+  EXPECT_LE(readStats()["noise"], 0.15);
   Arguments filtered = raw;
   filtered.insert(filtered.end(), {"--noisetarget", "denoised"});
   render(filtered);
-  EXPECT_EQ(stats()["samplesPerPixel"]["max"], few);
+  EXPECT_EQ(readStats()["samplesPerPixel"]["max"], few);
 }
 
 TEST_F(FilterCommand, ResultDoesNotDependOnTheThreads) {

@@ -86,8 +86,8 @@ TEST_F(MergeCommand, StoppedShardResumes) {
   EXPECT_EQ(stopped.status, 5) << stopped.err;
   EXPECT_NE(stopped.out.find("2of2.film: shard 2/2 of 64x64 pixels"), std::string::npos);
   Arguments first = arguments;
-  first[6] = "1/2";
-  first[8] = "1of2.film";
+  first[6] = "1/2";       // of --shard
+  first[8] = "1of2.film"; // of --checkpoint
   for (const Arguments& one : {first, arguments})
     EXPECT_EQ(run(one, folder.path()).status, 0);
   ASSERT_EQ(merge({"1of2.film", "2of2.film"}, {"--output", "merged.exr"}).status, 0);

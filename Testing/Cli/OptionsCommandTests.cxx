@@ -11,7 +11,7 @@ namespace {
 class OptionsCommand : public SmallScene {
 protected:
   /// Usage error of `fenestra volume.nrrd …` with these options.
-  static ExpectedError refusal(Arguments options, const std::string& text) {
+  static ExpectedError makeError(Arguments options, const std::string& text) {
     std::string name;
     for (const std::string& option : options)
       name += option + " ";
@@ -28,12 +28,12 @@ TEST_F(OptionsCommand, RejectsUnknownArgumentsAndSuggestsSimilarOnes) {
           {"render misspelled", {"rendr", "volume.nrrd"}, 2, "did you mean fenestra render?"},
           {"compare misspelled", {"comprae", "a", "b"}, 2, "did you mean fenestra compare?"},
           {"two volumes", {"volume.nrrd", "other.nrrd"}, 2, "'other.nrrd': unexpected argument"},
-          refusal({"--sample", "3"}, "--sample: unknown option; did you mean --samples?"),
-          refusal({"--smaples", "3"}, "did you mean --samples?"),
-          refusal({"--Output=a.png"}, "did you mean --output?"),
-          refusal({"-output", "a.png"}, "-output: unknown option; did you mean --output?"),
-          refusal({"--zzz"}, "--zzz: unknown option (see fenestra render --help"),
-          refusal({"-s", "3"}, "-s: unknown option"),
+          makeError({"--sample", "3"}, "--sample: unknown option; did you mean --samples?"),
+          makeError({"--smaples", "3"}, "did you mean --samples?"),
+          makeError({"--Output=a.png"}, "did you mean --output?"),
+          makeError({"-output", "a.png"}, "-output: unknown option; did you mean --output?"),
+          makeError({"--zzz"}, "--zzz: unknown option (see fenestra render --help"),
+          makeError({"-s", "3"}, "-s: unknown option"),
           {"option of render", {"compare", "a", "b", "--seed", "1"}, 2, "--seed: unknown option"},
       },
       folder.path());
@@ -41,24 +41,24 @@ TEST_F(OptionsCommand, RejectsUnknownArgumentsAndSuggestsSimilarOnes) {
 
 TEST_F(OptionsCommand, RejectsUnimplementedOptions) {
   std::vector<ExpectedError> refusals;
-  refusals.push_back(refusal({"--resume", "1"}, "--resume: unknown option"));
+  refusals.push_back(makeError({"--resume", "1"}, "--resume: unknown option"));
   refusals.push_back(
-      refusal({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "smooth"},
-              "--boundary: expected spline or exact, got 'smooth'"));
+      makeError({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "smooth"},
+                "--boundary: expected spline or exact, got 'smooth'"));
   expectErrors(refusals, folder.path());
 }
 
 TEST_F(OptionsCommand, RejectsMissingAndRepeatedValues) {
   expectErrors(
       {
-          refusal({"--samples"}, "--samples: value is missing; write --samples N"),
-          refusal({"--samples", "--seed", "3"}, "--samples: value is missing"),
-          refusal({"--samples="}, "--samples: value is missing"),
-          refusal({"--samples", ""}, "--samples: value is empty"),
-          refusal({"--samples", "--help="}, "--samples: value is missing"),
-          refusal({"--echo=1"}, "--echo: takes no value"),
-          refusal({"--", "--echo"}, "'--echo': unexpected argument after INPUT"),
-          refusal({"--samples", "3", "--samples", "4"}, "--samples: given more than once"),
+          makeError({"--samples"}, "--samples: value is missing; write --samples N"),
+          makeError({"--samples", "--seed", "3"}, "--samples: value is missing"),
+          makeError({"--samples="}, "--samples: value is missing"),
+          makeError({"--samples", ""}, "--samples: value is empty"),
+          makeError({"--samples", "--help="}, "--samples: value is missing"),
+          makeError({"--echo=1"}, "--echo: takes no value"),
+          makeError({"--", "--echo"}, "'--echo': unexpected argument after INPUT"),
+          makeError({"--samples", "3", "--samples", "4"}, "--samples: given more than once"),
       },
       folder.path());
 }
@@ -67,7 +67,7 @@ TEST_F(OptionsCommand, RejectsNumbersOutOfRange) {
   std::vector<ExpectedError> refusals;
   const auto refuseAll = [&](const std::string& option, const Arguments& values) {
     for (const std::string& value : values)
-      refusals.push_back(refusal({option, value}, option + ": "));
+      refusals.push_back(makeError({option, value}, option + ": "));
   };
   const Arguments noNumbers = {"nan", "inf", "-inf", "", "many", "1e999", "0x10", "1,5"};
   for (const char* option :
@@ -98,9 +98,9 @@ TEST_F(OptionsCommand, RejectsAnglesAndPlanesOutOfRange) {
   std::vector<ExpectedError> refusals;
   for (const char* angle : {"0", "180", "-30", "nan", "inf", "wide"})
     refusals.push_back(
-        refusal({"--projection", "perspective", "--angle", angle}, "--angle: expected a number"));
+        makeError({"--projection", "perspective", "--angle", angle}, "--angle: expected a number"));
   for (const char* plane : {"0,0,0", "0,0,0,0,0,0", "0,0,0,0,0,nan", "a"})
-    refusals.push_back(refusal({"--clip", "plane", "--plane", plane}, "--plane: "));
+    refusals.push_back(makeError({"--clip", "plane", "--plane", plane}, "--plane: "));
   expectErrors(refusals, folder.path());
 }
 
@@ -116,14 +116,14 @@ TEST_F(OptionsCommand, RejectsAnImageLargerThanMemory) {
 TEST_F(OptionsCommand, RejectsUnknownWords) {
   expectErrors(
       {
-          refusal({"--view", "top"}, "--view: expected anterior"),
-          refusal({"--view", "auto"}, "--view: auto requires a focus; add --focus"),
-          refusal({"--projection", "fisheye"},
-                  "--projection: expected orthographic or perspective"),
-          refusal({"--clip", "drill"},
-                  "--clip: expected auto, none, plane, hole, cutaway, ghost or surface, got"),
-          refusal({"--progress", "dots"}, "--progress: expected auto, bar, xml or none, got"),
-          refusal({"--layers", "colors", "--output", "a.exr"}, "--layers: 'colors' is unknown"),
+          makeError({"--view", "top"}, "--view: expected anterior"),
+          makeError({"--view", "auto"}, "--view: auto requires a focus; add --focus"),
+          makeError({"--projection", "fisheye"},
+                    "--projection: expected orthographic or perspective"),
+          makeError({"--clip", "drill"},
+                    "--clip: expected auto, none, plane, hole, cutaway, ghost or surface, got"),
+          makeError({"--progress", "dots"}, "--progress: expected auto, bar, xml or none, got"),
+          makeError({"--layers", "colors", "--output", "a.exr"}, "--layers: 'colors' is unknown"),
       },
       folder.path());
 }
@@ -132,27 +132,27 @@ TEST_F(OptionsCommand, RejectsContradictions) {
   const auto withFocus = [](Arguments options, const std::string& text) {
     const Arguments focus = {"--segmentation", "segments.seg.nrrd", "--focus", "A"};
     options.insert(options.begin(), focus.begin(), focus.end());
-    return refusal(options, text);
+    return makeError(options, text);
   };
   expectErrors(
       {
-          refusal({"--view", "left", "--position", "1,2,3"}, "--view and --position contradict"),
-          refusal({"--plane", "0,0,0,0,0,1"}, "--plane: used only with --clip plane"),
-          refusal({"--clip", "none", "--plane", "0,0,0,0,0,1"}, "--plane: used only with"),
-          refusal({"--clip", "plane"}, "--clip: plane requires --plane OX,OY,OZ,NX,NY,NZ"),
-          refusal({"--clip", "surface"}, "--clip: surface requires a focus; add --focus"),
-          refusal({"--clip", "cutaway"}, "--clip: cutaway requires a focus; add --focus"),
-          refusal({"--projection", "perspective", "--scale", "10"}, "--scale: only for"),
-          refusal({"--angle", "20"}, "--angle: only for --projection perspective"),
-          refusal({"--focus", "A"}, "--focus: requires --segmentation FILE"),
-          refusal({"--segmentation", "segments.seg.nrrd"},
-                  "--segmentation: used only with --focus, --materials or --preset"),
+          makeError({"--view", "left", "--position", "1,2,3"}, "--view and --position contradict"),
+          makeError({"--plane", "0,0,0,0,0,1"}, "--plane: used only with --clip plane"),
+          makeError({"--clip", "none", "--plane", "0,0,0,0,0,1"}, "--plane: used only with"),
+          makeError({"--clip", "plane"}, "--clip: plane requires --plane OX,OY,OZ,NX,NY,NZ"),
+          makeError({"--clip", "surface"}, "--clip: surface requires a focus; add --focus"),
+          makeError({"--clip", "cutaway"}, "--clip: cutaway requires a focus; add --focus"),
+          makeError({"--projection", "perspective", "--scale", "10"}, "--scale: only for"),
+          makeError({"--angle", "20"}, "--angle: only for --projection perspective"),
+          makeError({"--focus", "A"}, "--focus: requires --segmentation FILE"),
+          makeError({"--segmentation", "segments.seg.nrrd"},
+                    "--segmentation: used only with --focus, --materials or --preset"),
           withFocus({"--clip", "none", "--smoothing", "1"}, "--smoothing: used only with"),
           withFocus({"--clip", "cutaway", "--smoothing", "1"}, "--smoothing: used only with"),
-          refusal({"--controlpoints", "9"},
-                  "--controlpoints: used only with --clip surface and ghost"),
-          refusal({"--clip", "hole"}, "--clip: hole requires a focus; add --focus"),
-          refusal({"--clip", "ghost"}, "--clip: ghost requires a focus; add --focus"),
+          makeError({"--controlpoints", "9"},
+                    "--controlpoints: used only with --clip surface and ghost"),
+          makeError({"--clip", "hole"}, "--clip: hole requires a focus; add --focus"),
+          makeError({"--clip", "ghost"}, "--clip: ghost requires a focus; add --focus"),
           withFocus({"--hole", "box"}, "--hole: used only with --clip hole; add that"),
           withFocus({"--holemargin", "2"}, "--holemargin: used only with --clip hole"),
           withFocus({"--clip", "hole", "--holemargin", "-1"}, "--holemargin: "),
@@ -161,23 +161,23 @@ TEST_F(OptionsCommand, RejectsContradictions) {
           withFocus({"--clip", "ghost", "--ghost", "1.5"}, "--ghost: "),
           withFocus({"--clip", "none", "--offset", "2"}, "--offset: has no effect without a clip"),
           withFocus({"--clip", "none", "--soft", "2"}, "--soft: has no effect without a clip"),
-          refusal({"--margin", "2"}, "--margin: requires a focus; add --focus"),
-          refusal({"--labelsmoothing", "1"}, "--labelsmoothing: requires a focus or materials"),
-          refusal({"--contextdensity", "0.5"}, "--contextdensity: requires a focus"),
-          refusal({"--contextsaturation", "0.5"}, "--contextsaturation: requires a focus"),
+          makeError({"--margin", "2"}, "--margin: requires a focus; add --focus"),
+          makeError({"--labelsmoothing", "1"}, "--labelsmoothing: requires a focus or materials"),
+          makeError({"--contextdensity", "0.5"}, "--contextdensity: requires a focus"),
+          makeError({"--contextsaturation", "0.5"}, "--contextsaturation: requires a focus"),
           withFocus({"--margin", "1,2,3"}, "--margin: has 3 values; give one for all segments"),
           withFocus({"--margin", "1,x"}, "--margin: "),
           withFocus({"--margin", "2000"}, "--margin: must be from -1000 to 1000 mm"),
-          refusal({"--surface", "a.vtp"}, "--surface: not available with --clip none and plane"),
+          makeError({"--surface", "a.vtp"}, "--surface: not available with --clip none and plane"),
           withFocus({"--clip", "none", "--surface", "a.vtp"},
                     "--surface: not available with --clip none and plane"),
           withFocus({"--clip", "plane", "--plane", "0,0,0,0,0,1", "--surface", "a.vtp"},
                     "--surface: not available with --clip none and plane"),
-          refusal({"--position", "1,2,3", "--target", "1,2,3"}, "two different points"),
-          refusal({"--position", "0,0,9", "--target", "0,0,0", "--up", "0,0,1"},
-                  "--up: up must not"),
-          refusal({"--up", "0,0,0"}, "--up: up must not be zero"),
-          refusal({"--view", "superior", "--up", "0,0,1"}, "--up: up must not"),
+          makeError({"--position", "1,2,3", "--target", "1,2,3"}, "two different points"),
+          makeError({"--position", "0,0,9", "--target", "0,0,0", "--up", "0,0,1"},
+                    "--up: up must not"),
+          makeError({"--up", "0,0,0"}, "--up: up must not be zero"),
+          makeError({"--view", "superior", "--up", "0,0,1"}, "--up: up must not"),
       },
       folder.path());
 }

@@ -18,7 +18,7 @@ Outcome renderKnee(const Arguments& arguments, const std::string& input = "knee/
   return run(all, kneeFolder().path());
 }
 
-Arguments withSegments(const Arguments& arguments) {
+Arguments addSegments(const Arguments& arguments) {
   Arguments all = {"--segmentation", "knee/knee.seg.nrrd"};
   all.insert(all.end(), arguments.begin(), arguments.end());
   return all;
@@ -46,7 +46,7 @@ Image readResult() {
 }
 
 TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
-  const auto lines = renderEcho(withSegments({"--preset", "knee-cartilage", "--stats", "s.json"}));
+  const auto lines = renderEcho(addSegments({"--preset", "knee-cartilage", "--stats", "s.json"}));
   for (const char* line : {"preset: knee-cartilage", "focus: FemoralCartilage",
                            "focus: TibialCartilage", "transfer: mr-knee", "clip: surface"})
     EXPECT_TRUE(lines.contains(line)) << line;
@@ -64,15 +64,15 @@ TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
         written.insert(written.end(),
                        {std::string("--") + option, line.substr(std::string(option).size() + 2)});
   EXPECT_GE(written.size(), 16u);
-  ASSERT_EQ(renderKnee(withSegments(written)).status, 0);
+  ASSERT_EQ(renderKnee(addSegments(written)).status, 0);
   EXPECT_EQ(readResult().channels, byPreset.channels);
   EXPECT_FALSE(readResult().header.contains("preset"));
 }
 
 TEST(PresetsCommand, OptionsOverrideThePreset) {
   const auto lines = renderEcho(
-      withSegments({"--preset", "knee-cartilage", "--view", "superior", "--clip", "cutaway",
-                    "--transfer", "ct-bone", "--focus", "Femur", "--scale", "70"}));
+      addSegments({"--preset", "knee-cartilage", "--view", "superior", "--clip", "cutaway",
+                   "--transfer", "ct-bone", "--focus", "Femur", "--scale", "70"}));
   for (const char* line : {"view: superior", "clip: cutaway", "transfer: ct-bone", "focus: Femur",
                            "scale: 70", "lights: studio", "preset: knee-cartilage"})
     EXPECT_TRUE(lines.contains(line)) << line;
@@ -81,7 +81,7 @@ TEST(PresetsCommand, OptionsOverrideThePreset) {
       hasLine(lines, "labelsmoothing")); // still the preset's, since every clip mode uses it
   EXPECT_FALSE(lines.contains("focus: FemoralCartilage"));
   // An option that conflicts with the preset's --boundary also overrides it.
-  const auto others = renderEcho(withSegments(
+  const auto others = renderEcho(addSegments(
       {"--preset", "knee-cartilage", "--controlpoints", "20", "--position", "0,300,0"}));
   EXPECT_TRUE(others.contains("clip: surface"));
   EXPECT_FALSE(hasLine(others, "boundary"));
@@ -90,17 +90,17 @@ TEST(PresetsCommand, OptionsOverrideThePreset) {
 
 /// Slicer's panel passes all options, most with their default values.
 TEST(PresetsCommand, DefaultValuesFromSlicerDoNotOverrideThePreset) {
-  const auto lines = renderEcho(withSegments(
-      {"--preset", "knee-cartilage", "--clip", "auto", "--boundary", "spline", "--controlpoints",
-       "50", "--lights", "soft", "--returnparameterfile", "r.txt"}));
+  const auto lines = renderEcho(
+      addSegments({"--preset", "knee-cartilage", "--clip", "auto", "--boundary", "spline",
+                   "--controlpoints", "50", "--lights", "soft", "--returnparameterfile", "r.txt"}));
   EXPECT_TRUE(lines.contains("clip: surface"));
   EXPECT_TRUE(lines.contains("boundary: exact"));
   EXPECT_TRUE(lines.contains("lights: soft"));
 }
 
 TEST(PresetsCommand, AutoChoosesThePresetBySegmentNames) {
-  EXPECT_TRUE(renderEcho(withSegments({"--preset", "auto"})).contains("preset: knee-cartilage"));
-  EXPECT_TRUE(renderEcho(withSegments({"--preset", "auto", "--focus", "Femoral cartilage"}))
+  EXPECT_TRUE(renderEcho(addSegments({"--preset", "auto"})).contains("preset: knee-cartilage"));
+  EXPECT_TRUE(renderEcho(addSegments({"--preset", "auto", "--focus", "Femoral cartilage"}))
                   .contains("focus: Femoral cartilage"));
   EXPECT_TRUE(renderEcho({"--preset", "auto"}, "knee/knee.mrb").contains("preset: knee-cartilage"));
 }
@@ -114,14 +114,14 @@ TEST(PresetsCommand, WithoutSegmentationSetsNeitherFocusNorClip) {
 
 /// A preset for another modality still renders, with the default transfer function.
 TEST(PresetsCommand, TransferFunctionForAnotherModalityIsReplacedWithAWarning) {
-  const Outcome outcome = renderKnee(withSegments({"--preset", "liver", "--focus", "Femur"}));
+  const Outcome outcome = renderKnee(addSegments({"--preset", "liver", "--focus", "Femur"}));
   EXPECT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.err.find("is for CT, which does not seem to be this volume's modality"),
             std::string::npos)
       << outcome.err;
   EXPECT_EQ(readResult().header.at("look"), "by the volume's range");
   EXPECT_EQ(
-      renderKnee(withSegments({"--preset", "liver", "--focus", "Femur", "--transfer", "mr-knee"}))
+      renderKnee(addSegments({"--preset", "liver", "--focus", "Femur", "--transfer", "mr-knee"}))
           .err,
       "");
 }
@@ -131,7 +131,7 @@ TEST(PresetsCommand, PresetCanBeAFile) {
   folder.write("menisci.json", R"({"title": "Menisci", "modality": "MR",
     "focus": {"names": ["menisc*"]}, "flags": {"view": "superior", "transfer":
       {"scalars": "relative", "extinction": [[0, 0], [1, 1]], "albedo": [[0, 1, 0.5, 0.5]]}}})");
-  const auto lines = renderEcho(withSegments({"--preset", "menisci.json"}));
+  const auto lines = renderEcho(addSegments({"--preset", "menisci.json"}));
   EXPECT_TRUE(lines.contains("preset: menisci"));
   EXPECT_TRUE(hasLine(lines, "focus: "));
   EXPECT_TRUE(hasLine(lines, "transfer: {"));
@@ -152,25 +152,25 @@ TEST(PresetsCommand, RejectsUnknownAndDamagedPresets) {
   };
   expectErrors(
       {
-          refusal("unknown", withSegments({"--preset", "spleen"}), 3,
+          refusal("unknown", addSegments({"--preset", "spleen"}), 3,
                   "spleen: no such file or preset; --preset takes auto, a file, "
                   "or one of brain-surface, brain-tumor"),
-          refusal("no such segment", withSegments({"--preset", "liver"}), 3,
+          refusal("no such segment", addSegments({"--preset", "liver"}), 3,
                   "knee.seg.nrrd: --preset liver: none of its segments found (only Femur, Tibia"),
           refusal("values without names", {"--segmentation", "values.nrrd", "--preset", "liver"}, 3,
                   "have no names, only values; add --labels with names, or --focus"),
           refusal("auto by values", {"--segmentation", "values.nrrd", "--preset", "auto"}, 3,
                   "have no names, only values; add --labels with names, or name a preset"),
           refusal("auto without segments", {"--preset", "auto"}, 2, "add --segmentation FILE"),
-          refusal("auto unknown", withSegments({"--preset", "auto", "--focus", "Femur"}), 3,
+          refusal("auto unknown", addSegments({"--preset", "auto", "--focus", "Femur"}), 3,
                   "no preset matches a segment (Femur)"),
-          refusal("other option", withSegments({"--preset", "size.json", "--focus", "1"}), 3,
+          refusal("other option", addSegments({"--preset", "size.json", "--focus", "1"}), 3,
                   "size.json: flags: \"size\" is not an option of clipping, view or appearance"),
-          refusal("not JSON", withSegments({"--preset", "brackets.json"}), 3,
+          refusal("not JSON", addSegments({"--preset", "brackets.json"}), 3,
                   "brackets.json: is not valid JSON"),
-          refusal("modality", withSegments({"--preset", "modality.json"}), 3,
+          refusal("modality", addSegments({"--preset", "modality.json"}), 3,
                   "modality.json: modality: must be"),
-          refusal("twice", withSegments({"--preset", "liver", "--preset", "auto"}), 2,
+          refusal("twice", addSegments({"--preset", "liver", "--preset", "auto"}), 2,
                   "--preset: given more than once"),
       },
       folder.path());
@@ -214,7 +214,7 @@ TEST(PresetsCommand, ServeSetsAndResetsThePreset) {
   ASSERT_TRUE(waitForImage("1")) << process.output();
   const Image preset = readImage(folder / "served.exr");
   EXPECT_EQ(preset.header.at("preset"), "knee-cartilage");
-  ASSERT_EQ(renderKnee(withSegments({"--preset", "knee-cartilage", "--view", "superior"})).status,
+  ASSERT_EQ(renderKnee(addSegments({"--preset", "knee-cartilage", "--view", "superior"})).status,
             0);
   EXPECT_EQ(readResult().channels, preset.channels);
   process.write(R"({"id": 2, "preset": "spleen"})"

@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <regex>
 #include <stdexcept>
@@ -19,8 +20,8 @@ namespace fenestra {
 namespace {
 
 /// Time limit of a process in seconds.
-double timeLimit() {
-  return 30.0 * static_cast<double>(testing::sampleDivisor());
+double getTimeLimit() {
+  return 30.0 * static_cast<double>(testing::slowdownFactor());
 }
 
 /// Content of a file. Opens it again, since reading through `file` would move the child's position.
@@ -99,7 +100,9 @@ bool Process::waitUntilHandling(int signal) const {
         std::ifstream status("/proc/" + std::to_string(m_id) + "/status");
         for (std::string line; std::getline(status, line);)
           if (line.starts_with("SigCgt:"))
-            return (std::strtoull(line.c_str() + 7, nullptr, 16) >> (signal - 1) & 1) != 0;
+            return (std::strtoull(line.c_str() + std::strlen("SigCgt:"), nullptr, 16) >>
+                        (signal - 1) &
+                    1) != 0;
         return false;
       },
       10.0);
@@ -107,12 +110,12 @@ bool Process::waitUntilHandling(int signal) const {
 
 bool Process::waitForOutput(const std::string& expression) const {
   const std::regex pattern(expression);
-  return waitUntil([&] { return std::regex_search(readContent(m_out), pattern); }, timeLimit());
+  return waitUntil([&] { return std::regex_search(readContent(m_out), pattern); }, getTimeLimit());
 }
 
 Outcome Process::wait() {
   const Stopwatch watch;
-  waitUntil([] { return false; }, timeLimit());
+  waitUntil([] { return false; }, getTimeLimit());
   Outcome outcome;
   outcome.seconds = watch.seconds();
   if (isRunning()) {

@@ -101,7 +101,6 @@ void expectOutline(const TemporaryFolder& folder, const std::string& scene,
 }
 
 // ---- a scene with all kinds of nodes
-// -------------------------------------------------------------
 
 Map makeMap(std::initializer_list<double> rows) {
   Map map;
@@ -122,7 +121,7 @@ std::string formatMatrix(const Map& map) {
 }
 
 /// Map from [-1, 1]^3 onto the 4x4x4 volume of NrrdText, in RAS.
-Map volumeCube() {
+Map makeVolumeCube() {
   return makeMap({-2, 0, 0, -1.5, 0, -2, 0, -1.5, 0, 0, 2, 1.5});
 }
 
@@ -144,7 +143,7 @@ protected:
     folder.write("R O I.mrk.json", json.str());
   }
 
-  std::string scene(const std::string& camera, bool cropping) const {
+  std::string makeScene(const std::string& camera, bool cropping) const {
     return R"(<?xml version="1.0" encoding="UTF-8"?><MRML version="Slicer 5.6.2 32448">
       <LinearTransform id="outer" matrixTransformToParent=")" +
            formatMatrix(outer) + R"("/>
@@ -171,19 +170,19 @@ protected:
 };
 
 TEST_F(ScenesCommand, ParallelCameraOfTheSceneIsUsed) {
-  folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
-  expectOutline(folder, "s.mrml", {}, view, {outer * inner * volumeCube()});
+  folder.write("s.mrml", makeScene(R"(parallelProjection="true" parallelScale="4")", false));
+  expectOutline(folder, "s.mrml", {}, view, {outer * inner * makeVolumeCube()});
 }
 
 TEST_F(ScenesCommand, PerspectiveViewIsCroppedByTheRotatedRegion) {
-  folder.write("s.mrml", scene(R"(parallelProjection="false" viewAngle="16")", true));
+  folder.write("s.mrml", makeScene(R"(parallelProjection="false" viewAngle="16")", true));
   view.parallel = false;
-  expectOutline(folder, "s.mrml", {}, view, {outer * inner * volumeCube(), roi});
+  expectOutline(folder, "s.mrml", {}, view, {outer * inner * makeVolumeCube(), roi});
 }
 
 TEST_F(ScenesCommand, OptionsOverrideTheCameraOfTheScene) {
-  folder.write("s.mrml", scene(R"(viewAngle="16" parallelScale="4")", true));
-  const Boxes boxes = {outer * inner * volumeCube(), roi};
+  folder.write("s.mrml", makeScene(R"(viewAngle="16" parallelScale="4")", true));
+  const Boxes boxes = {outer * inner * makeVolumeCube(), roi};
   expectOutline(folder, "s.mrml", {"--projection", "orthographic"}, view, boxes);
   view.parallelScale = 3.0;
   view.focalPoint = {2, -2.5, 0.5};
@@ -193,7 +192,7 @@ TEST_F(ScenesCommand, OptionsOverrideTheCameraOfTheScene) {
 }
 
 TEST_F(ScenesCommand, TransferFunctionAndBackgroundDefaultToTheScene) {
-  folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
+  folder.write("s.mrml", makeScene(R"(parallelProjection="true" parallelScale="4")", false));
   const auto render = [&](const Arguments& more) {
     Arguments all = {"s.mrml", "--size", "16x16", "--samples", "64", "--output", "look.exr"};
     all.insert(all.end(), more.begin(), more.end());
@@ -218,7 +217,7 @@ TEST_F(ScenesCommand, TransferFunctionAndBackgroundDefaultToTheScene) {
 }
 
 TEST_F(ScenesCommand, FocusIsFoundInTheSceneOrInAFile) {
-  folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
+  folder.write("s.mrml", makeScene(R"(parallelProjection="true" parallelScale="4")", false));
   const Arguments common = {"s.mrml", "--size",  "64x64",    "--samples", "1",
                             "--clip", "cutaway", "--layers", "color,clip"};
   const auto with = [&](const Arguments& more) {
@@ -242,7 +241,7 @@ TEST_F(ScenesCommand, FocusIsFoundInTheSceneOrInAFile) {
 /// Stored options reproduce an image. An option on the command line overrides all stored options of
 /// its group.
 TEST_F(ScenesCommand, StoredOptionsReproduceTheImage) {
-  const std::string plain = scene(R"(parallelProjection="true" parallelScale="4")", false);
+  const std::string plain = makeScene(R"(parallelProjection="true" parallelScale="4")", false);
   std::string stored = plain;
   stored.insert(stored.find("</MRML>"), R"(
       <FenestraRender id="f1" name="earlier" view="left" size="8x8"/>
@@ -295,13 +294,13 @@ TEST_F(ScenesCommand, StoredOptionsReproduceTheImage) {
 }
 
 TEST_F(ScenesCommand, RejectsDamagedScenesAndMissingNodes) {
-  folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
-  folder.write("perspective.mrml", scene(R"(viewAngle="16")", false));
+  folder.write("s.mrml", makeScene(R"(parallelProjection="true" parallelScale="4")", false));
+  folder.write("perspective.mrml", makeScene(R"(viewAngle="16")", false));
   folder.write("none.mrml", "<MRML/>");
   folder.write("entities.mrml", "<!DOCTYPE a [<!ENTITY b 'c'>]><MRML>&b;</MRML>");
   folder.write("half.mrml", "<MRML><Volume");
   folder.write("words.mrb", "words");
-  std::string mip = scene("", false);
+  std::string mip = makeScene("", false);
   mip.replace(mip.find("<View "), 6, "<View raycastTechnique=\"MaximumIntensityProjection\" ");
   folder.write("mip.mrml", mip);
   const auto with = [](const std::string& file, const Arguments& more) {
@@ -329,7 +328,7 @@ TEST_F(ScenesCommand, RejectsDamagedScenesAndMissingNodes) {
 }
 
 TEST_F(ScenesCommand, ErrorNamesTheFileInTheArchive) {
-  folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
+  folder.write("s.mrml", makeScene(R"(parallelProjection="true" parallelScale="4")", false));
   int failure = 0;
   zip_t* zip = zip_open((folder / "s.mrb").c_str(), ZIP_CREATE, &failure);
   for (const std::string name : {"s.mrml", "volume.nrrd", "segments.seg.nrrd"})

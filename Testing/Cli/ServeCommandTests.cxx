@@ -13,8 +13,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Time limit in seconds: about 0.1 is needed on an idle machine, more by slow builds.
-const double timeLimit = 2.0 * static_cast<double>(testing::sampleDivisor());
+/// Time limit in seconds of an end: 2, longer for slow builds. About 0.1 are needed.
+const double timeLimit = 2.0 * static_cast<double>(testing::slowdownFactor());
 
 class ServeCommand : public SmallScene {
 protected:
@@ -30,11 +30,11 @@ protected:
       all.push_back(json::parse(line));
     return all;
   }
-  /// Waits for the final image of a change.
+  /// Waits for the final image of a change; `id`: as JSON, null for the image before any change.
   static bool waitForImage(const Process& process, const std::string& id) {
     return process.waitForOutput("\"picture\",\"id\":" + id + ",[^\n]*\"done\":true[^\n]*\n");
   }
-  /// Waits for the error event of a change.
+  /// Waits for the error event of a change, or of a line without a valid id (null).
   static bool waitForError(const Process& process, const std::string& id,
                            const std::string& message) {
     return process.waitForOutput("\"error\",\"id\":" + id + ",\"message\":\"[^\n]*" + message);
@@ -47,6 +47,7 @@ protected:
     EXPECT_EQ(run(all, folder.path()).status, 0);
     return readImage(folder / "b.exr");
   }
+  /// Compares the server's latest image.
   void expectImage(const Arguments& options) const {
     EXPECT_EQ(readImage(folder / "a.exr").channels, renderImage(options).channels);
   }
@@ -56,6 +57,7 @@ TEST_F(ServeCommand, ImagesEqualThoseOfRender) {
   Process process(makeArguments(), folder.path());
   ASSERT_TRUE(waitForImage(process, "null")) << process.output();
   expectImage({});
+  // Changes add up; null and "" remove an option. Beside each: the options of an equal render.
   const std::vector<std::pair<std::string, Arguments>> changes = {
       {R"({"id": 1, "view": "left"})", {"--view", "left"}},
       {R"({"id": 2, "seed": 3, "density": 2.5})",
@@ -79,6 +81,7 @@ TEST_F(ServeCommand, ImagesEqualThoseOfRender) {
     process.write(line + "\n");
     ASSERT_TRUE(waitForImage(process, std::to_string(i + 1))) << process.output();
     Arguments options = changes[i].second;
+    // renderImage() renders 16x16 only.
     if (std::find(options.begin(), options.end(), "8x8") != options.end()) {
       EXPECT_EQ(readImage(folder / "a.exr").width, 8);
       continue;
@@ -115,7 +118,7 @@ TEST_F(ServeCommand, ImageIsRefinedUntilTheNextChange) {
     EXPECT_EQ(event["event"], "picture");
 }
 
-TEST_F(ServeCommand, BadLineGivesAnErrorAndChangesNothing) {
+TEST_F(ServeCommand, InvalidLineGivesAnErrorAndChangesNothing) {
   Process process(makeArguments(), folder.path());
   ASSERT_TRUE(waitForImage(process, "null"));
   const std::vector<std::array<std::string, 3>> lines = {
@@ -140,7 +143,7 @@ TEST_F(ServeCommand, BadLineGivesAnErrorAndChangesNothing) {
       {R"({"id": [1], "view": "left"})", "null", "id: must be"},
       {R"({"id": true, "view": "left"})", "null", "id: must be"},
       {R"({"id": ")" + std::string(257, 'x') + R"(", "view": "left"})", "null", "id: must be"},
-      {"", "", ""},
+      {"", "", ""}, // an empty line is ignored
   };
   for (const auto& [line, id, message] : lines) {
     process.write(line + "\n");
@@ -149,33 +152,35 @@ TEST_F(ServeCommand, BadLineGivesAnErrorAndChangesNothing) {
   }
   process.write("{\"id\": 99, \"view\": \"left\"}\n");
   ASSERT_TRUE(waitForImage(process, "99")) << process.output();
-  expectImage({"--view", "left"}); // and none of the rejected changes
+  expectImage({"--view", "left"}); // without any of the rejected changes
 }
 
 /// Sends the lines in one write, so that the server reads them together.
-TEST_F(ServeCommand, GoodLinesAroundABadOneApply) {
+TEST_F(ServeCommand, ChangesBeforeAndAfterARejectedOneApply) {
   Process process(makeArguments(), folder.path());
   ASSERT_TRUE(waitForImage(process, "null"));
-  const std::vector<std::string> bad = {
-      R"({"id": "bad", "lights": "/dev/zero"})", R"({"id": "bad", "transfer": "missing.json"})",
-      R"({"id": "bad", "environment": "missing.exr"})",
-      R"({"id": "bad", "segmentation": "missing.nrrd", "focus": "A"})",
-      R"({"id": "bad", "segmentation": "segments.seg.nrrd", "focus": "C"})"};
-  for (std::size_t i = 0; i < bad.size(); ++i) {
-    const std::string number = std::to_string(i), before = "b" + number, after = "a" + number;
+  const std::vector<std::string> rejected = {
+      R"({"id": "rejected", "lights": "/dev/zero"})",
+      R"({"id": "rejected", "transfer": "missing.json"})",
+      R"({"id": "rejected", "environment": "missing.exr"})",
+      R"({"id": "rejected", "segmentation": "missing.nrrd", "focus": "A"})",
+      R"({"id": "rejected", "segmentation": "segments.seg.nrrd", "focus": "C"})"};
+  for (std::size_t i = 0; i < rejected.size(); ++i) {
+    const std::string number = std::to_string(i), before = "before" + number,
+                      after = "after" + number;
     process.write(R"({"id": ")" + before + R"(", "seed": )" + std::to_string(i + 1) + "}\n" +
-                  bad[i] + "\n" + R"({"id": ")" + after + R"(", "density": )" +
+                  rejected[i] + "\n" + R"({"id": ")" + after + R"(", "density": )" +
                   std::to_string(i + 2) + "}\n");
-    ASSERT_TRUE(waitForError(process, "\"bad\"", "")) << bad[i] << process.output();
-    ASSERT_TRUE(waitForImage(process, "\"" + after + "\"")) << bad[i] << process.output();
+    ASSERT_TRUE(waitForError(process, "\"rejected\"", "")) << rejected[i] << process.output();
+    ASSERT_TRUE(waitForImage(process, "\"" + after + "\"")) << rejected[i] << process.output();
     expectImage({"--seed", std::to_string(i + 1), "--density", std::to_string(i + 2)});
   }
-  std::size_t refused = 0;
+  std::size_t errors = 0;
   for (const json& event : readEvents(process)) {
-    EXPECT_EQ(event["event"] == "error", event["id"] == "bad") << event;
-    refused += event["event"] == "error" ? 1 : 0;
+    EXPECT_EQ(event["event"] == "error", event["id"] == "rejected") << event;
+    errors += event["event"] == "error" ? 1 : 0;
   }
-  EXPECT_EQ(refused, bad.size());
+  EXPECT_EQ(errors, rejected.size());
 }
 
 TEST_F(ServeCommand, ChangedViewEndsWithTheDenoisedImageOfRender) {
@@ -189,7 +194,7 @@ TEST_F(ServeCommand, ChangedViewEndsWithTheDenoisedImageOfRender) {
                 "\n");
   ASSERT_TRUE(waitForImage(process, "1")) << process.output();
   for (const json& event : readEvents(process))
-    EXPECT_EQ(event.value("noiseFiltered", 0.0) > 0.0, event["samples"] > 1) << event;
+    EXPECT_EQ(event.value("noiseDenoised", 0.0) > 0.0, event["samples"] > 1) << event;
   Arguments render = options;
   render.insert(render.end(), {"b.png", "--position", "5,60,9"});
   ASSERT_EQ(run(render, folder.path()).status, 0);
@@ -198,15 +203,15 @@ TEST_F(ServeCommand, ChangedViewEndsWithTheDenoisedImageOfRender) {
 
 /// If an image cannot be written, as on a full disk, the render and the server continue.
 TEST_F(ServeCommand, WriteFailureGivesAnErrorAndServingContinues) {
-  const std::filesystem::path place = folder / "results";
-  std::filesystem::create_directory(place);
+  const std::filesystem::path resultFolder = folder / "results";
+  std::filesystem::create_directory(resultFolder);
   Process process({"serve", "volume.nrrd", "--size", "16x16", "--samples", "100000000", "--output",
                    "results/a.exr"},
                   folder.path());
   ASSERT_TRUE(process.waitForOutput("picture"));
-  std::filesystem::remove_all(place);
+  std::filesystem::remove_all(resultFolder);
   ASSERT_TRUE(waitForError(process, "null", "results/a.exr")) << process.output();
-  std::filesystem::create_directory(place);
+  std::filesystem::create_directory(resultFolder);
   process.write("{\"id\": 2, \"samples\": 4}\n");
   ASSERT_TRUE(waitForImage(process, "2")) << process.output();
 }
@@ -243,7 +248,7 @@ TEST_F(ServeCommand, ClosedOutputEndsWithStatus4) {
   EXPECT_NE(outcome.err.find("standard output was closed"), std::string::npos) << outcome.err;
 }
 
-TEST_F(ServeCommand, RejectsMissingInputStatsAndSurface) {
+TEST_F(ServeCommand, MissingInputStatsAndSurfaceOptionsAreRejected) {
   expectErrors(
       {{"no input", {"serve"}, 2, "INPUT: missing"},
        {"missing", {"serve", "missing.nrrd"}, 3, "missing.nrrd"},

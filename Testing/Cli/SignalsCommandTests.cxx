@@ -15,7 +15,7 @@ namespace fenestra::SignalsCommandTests {
 namespace {
 
 /// Time limit in seconds: about 0.1 is needed on an idle machine, more by slow builds.
-const double timeLimit = 2.0 * static_cast<double>(testing::sampleDivisor());
+const double timeLimit = 2.0 * static_cast<double>(testing::slowdownFactor());
 
 class SignalsCommand : public SmallScene, public ::testing::WithParamInterface<int> {};
 

@@ -16,7 +16,7 @@ const Arguments knee = {"knee/knee.nrrd", "--segmentation",   "knee/knee.seg.nrr
                         "--focus",        "FemoralCartilage", "--size",
                         "48x40",          "--samples",        "1"};
 
-Arguments kneeArguments(const Arguments& more) {
+Arguments makeKneeArguments(const Arguments& more) {
   Arguments all = knee;
   all.insert(all.end(), more.begin(), more.end());
   return all;
@@ -38,6 +38,7 @@ PlyContent readPly(const std::filesystem::path& path) {
   content.faces = numberAfter("element face ");
   const std::string last = "end_header\n";
   const std::size_t begin = bytes.find(last) + last.size();
+  // Bytes: four floats per vertex; a count and three 32-bit indices per face.
   EXPECT_EQ(bytes.size(), begin + 16 * content.vertices.size() + 13 * content.faces);
   std::memcpy(content.vertices.data(), bytes.data() + begin, 16 * content.vertices.size());
   return content;
@@ -47,7 +48,7 @@ class SurfaceCommand : public ::testing::TestWithParam<const char*> {
 protected:
   /// Renders the knee.
   Outcome render(const Arguments& more) const {
-    return run(kneeArguments(more), kneeFolder().path());
+    return run(makeKneeArguments(more), kneeFolder().path());
   }
   std::string outputPath(const std::string& name) const { return (folder / name).string(); }
 
@@ -74,7 +75,7 @@ TEST_P(SurfaceCommand, WritesTheSameMeshInEveryFormat) {
   EXPECT_EQ(piece.attribute("NumberOfPoints").as_ullong(), ply.vertices.size());
   EXPECT_EQ(piece.attribute("NumberOfPolys").as_ullong(), ply.faces);
   EXPECT_TRUE(vtp.select_node("//PointData/DataArray[@Name='depth']"));
-  EXPECT_EQ(std::filesystem::file_size(folder / "a.STL"), 84 + 50 * ply.faces);
+  EXPECT_EQ(std::filesystem::file_size(folder / "a.STL"), 84 + 50 * ply.faces); // header, facets
 }
 
 TEST_P(SurfaceCommand, MeshHasTheDepthsOfTheClipChannel) {
@@ -90,6 +91,7 @@ TEST_P(SurfaceCommand, MeshHasTheDepthsOfTheClipChannel) {
     if (word.starts_with("--position="))
       std::sscanf(word.c_str(), "--position=%lf,%lf,%lf", &position[0], &position[1], &position[2]);
   // View from the left: depth grows along +R, columns along -A, rows along -S, 1.5 mm per pixel.
+  // The camera is at the center of the 48 x 40 pixels.
   std::size_t inside = 0;
   for (const auto& [x, y, z, depth] : readPly(folder / "a.ply").vertices) {
     EXPECT_NEAR(x, position[0] + depth, 1e-3);
@@ -113,7 +115,7 @@ TEST(SurfaceCommandLine, RejectsUnwritableFilesAndRendersWithoutSurface) {
   std::filesystem::create_directory_symlink(kneeFolder() / "knee", folder / "knee");
   std::filesystem::create_directory(folder / "folder.vtp");
   const auto surfaceArguments = [](const std::string& file) {
-    return kneeArguments({"--surface", file});
+    return makeKneeArguments({"--surface", file});
   };
   const std::string extensions = "unknown file extension; use .vtp, .ply or .stl";
   const std::string unavailable =
@@ -122,20 +124,20 @@ TEST(SurfaceCommandLine, RejectsUnwritableFilesAndRendersWithoutSurface) {
       {
           {"unknown extension", surfaceArguments("a.obj"), 2, "--surface a.obj: " + extensions},
           {"no extension", surfaceArguments("a"), 2, extensions},
-          {"no clip", kneeArguments({"--surface", "a.vtp", "--clip", "none"}), 2, unavailable},
+          {"no clip", makeKneeArguments({"--surface", "a.vtp", "--clip", "none"}), 2, unavailable},
           {"no focus", {"knee/knee.nrrd", "--surface", "a.vtp"}, 2, unavailable},
           {"a missing folder", surfaceArguments("missing/a.vtp"), 4,
            "missing/a.vtp: cannot be written: "},
           {"no permission", surfaceArguments("/proc/a.ply"), 4, "/proc/a.ply: cannot be written: "},
           {"a folder", surfaceArguments("folder.vtp"), 4, "folder.vtp: is a folder"},
-          {"over the stats", kneeArguments({"--surface", "a.vtp", "--stats", "./a.vtp"}), 2,
+          {"over the stats", makeKneeArguments({"--surface", "a.vtp", "--stats", "./a.vtp"}), 2,
            "a.vtp: would be written twice"},
           {"over a missing input",
            {"knee/knee.nrrd", "--segmentation", "knee/bone.vtp", "--focus", "1", "--surface",
             "knee/bone.vtp"},
            3,
            "knee/bone.vtp: no such file"},
-          {"twice", kneeArguments({"--surface", "a.vtp", "--surface", "b.vtp"}), 2,
+          {"twice", makeKneeArguments({"--surface", "a.vtp", "--surface", "b.vtp"}), 2,
            "more than once"},
       },
       folder.path());

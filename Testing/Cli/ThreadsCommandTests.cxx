@@ -22,6 +22,7 @@ using ThreadsCommand = SmallScene;
 /// Makes thread creation fail in this process and its children; new processes still start. Uses
 /// seccomp, since RLIMIT_NPROC does not apply to root.
 bool forbidThreads() {
+  // The last two numbers of a jump: instructions to skip if its test is true, and if it is false.
   constexpr auto refused = SECCOMP_RET_ERRNO | EAGAIN;
   sock_filter filter[] = {
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),

@@ -32,7 +32,9 @@ protected:
     return run(makeArguments(more), folder.path());
   }
 
-  static std::string frameName(int number) { return "turn_000" + std::to_string(number) + ".exr"; }
+  static std::string makeFrameName(int number) {
+    return "turn_000" + std::to_string(number) + ".exr";
+  }
   /// Camera options from a frame's header.
   Arguments readCamera(const std::string& file) const {
     std::istringstream words(readImage(folder / file).header.at("camera"));
@@ -54,7 +56,7 @@ protected:
     throw std::runtime_error(file + " has no " + option);
   }
   /// Unit vector from a frame's target to its camera.
-  Vec3 cameraDirection(const std::string& file) const {
+  Vec3 readCameraDirection(const std::string& file) const {
     return (readVector(file, "--position=") - readVector(file, "--target=")).normalized();
   }
   nlohmann::json readManifest() const {
@@ -73,14 +75,16 @@ TEST_F(TurntableCommand, FramesEqualThoseOfRender) {
     for (const char* ending : {".png", ".nrrd", "-Z.nrrd"})
       EXPECT_TRUE(std::filesystem::exists(folder / ("turn_000" + std::to_string(i) + ending)));
     Arguments arguments = {"--output", "single.exr", "--boundary", "exact"};
-    for (const Arguments& more : {focus, readCamera(frameName(i))})
+    for (const Arguments& more : {focus, readCamera(makeFrameName(i))})
       arguments.insert(arguments.end(), more.begin(), more.end());
     ASSERT_EQ(renderVolume(arguments).status, 0);
-    const Image single = readImage(folder / "single.exr"), frame = readImage(folder / frameName(i));
+    const Image single = readImage(folder / "single.exr"),
+                frame = readImage(folder / makeFrameName(i));
     EXPECT_EQ(single.channels, frame.channels) << i;
     EXPECT_EQ(single.header.at("camera"), frame.header.at("camera"));
   }
-  EXPECT_NE(readImage(folder / frameName(0)).channels, readImage(folder / frameName(1)).channels);
+  EXPECT_NE(readImage(folder / makeFrameName(0)).channels,
+            readImage(folder / makeFrameName(1)).channels);
   const auto stats = nlohmann::json::parse(readBytes(folder / "all.json"));
   EXPECT_EQ(stats["rendered"], 4);
   EXPECT_GT(stats["surfaceChangeMmPerDegree"]["max"], 0.0);
@@ -91,26 +95,26 @@ TEST_F(TurntableCommand, FramesEqualThoseOfRender) {
 TEST_F(TurntableCommand, RotatesAroundTheTargetFromTheRequestedView) {
   ASSERT_EQ(
       runTurntable({"--output", "turn.exr", "--view", "anterior", "--degrees", "-180"}).status, 0);
-  EXPECT_LT((cameraDirection(frameName(0)) - Vec3::UnitY()).norm(), 1e-12);
-  EXPECT_LT((cameraDirection(frameName(2)) - Vec3::UnitX()).norm(), 1e-12)
+  EXPECT_LT((readCameraDirection(makeFrameName(0)) - Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_LT((readCameraDirection(makeFrameName(2)) - Vec3::UnitX()).norm(), 1e-12)
       << "clockwise, to the patient's right";
-  EXPECT_LT((cameraDirection(frameName(3)) - Vec3(1, -1, 0).normalized()).norm(), 1e-12);
-  EXPECT_EQ(readVector(frameName(0), "--target="), readVector(frameName(3), "--target="));
+  EXPECT_LT((readCameraDirection(makeFrameName(3)) - Vec3(1, -1, 0).normalized()).norm(), 1e-12);
+  EXPECT_EQ(readVector(makeFrameName(0), "--target="), readVector(makeFrameName(3), "--target="));
 }
 
 TEST_F(TurntableCommand, RendersOnlyMissingFrames) {
   ASSERT_EQ(runTurntable({"--output", "turn.exr"}).status, 0);
-  const Image removed = readImage(folder / frameName(2));
+  const Image removed = readImage(folder / makeFrameName(2));
   std::map<int, std::filesystem::file_time_type> written;
   for (const int index : {0, 1, 3})
-    written[index] = std::filesystem::last_write_time(folder / frameName(index));
-  std::filesystem::remove(folder / frameName(2));
+    written[index] = std::filesystem::last_write_time(folder / makeFrameName(index));
+  std::filesystem::remove(folder / makeFrameName(2));
   const Outcome outcome = runTurntable({"--output", "turn.exr", "--threads", "1"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("4 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
   for (const auto& [index, when] : written)
-    EXPECT_EQ(std::filesystem::last_write_time(folder / frameName(index)), when) << index;
-  EXPECT_EQ(readImage(folder / frameName(2)).channels, removed.channels);
+    EXPECT_EQ(std::filesystem::last_write_time(folder / makeFrameName(index)), when) << index;
+  EXPECT_EQ(readImage(folder / makeFrameName(2)).channels, removed.channels);
   EXPECT_EQ(readManifest()["finished"].size(), 4U);
 }
 
@@ -142,20 +146,20 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionWithIdenticalFrames) {
   EXPECT_EQ(listFiles(folder.path()).size(), 2 + finished + 1) << "an unfinished frame remains";
   std::map<int, std::string> before;
   for (int i = 0; i < static_cast<int>(finished); ++i)
-    before[i] = readBytes(folder / frameName(i));
+    before[i] = readBytes(folder / makeFrameName(i));
 
   const Outcome rest = run(arguments, folder.path());
   ASSERT_EQ(rest.status, 0) << rest.err;
   EXPECT_NE(rest.out.find(std::to_string(4 - finished) + " rendered now"), std::string::npos);
   for (const auto& [i, bytes] : before)
-    EXPECT_EQ(readBytes(folder / frameName(i)), bytes) << i;
+    EXPECT_EQ(readBytes(folder / makeFrameName(i)), bytes) << i;
   const nlohmann::json resumed = readManifest();
   Arguments complete = arguments;
   *std::find(complete.begin(), complete.end(), "turn.exr") = "complete.exr";
   ASSERT_EQ(run(complete, folder.path()).status, 0);
   for (int i = 0; i < 4; ++i)
     EXPECT_EQ(readImage(folder / ("complete_000" + std::to_string(i) + ".exr")).channels,
-              readImage(folder / frameName(i)).channels)
+              readImage(folder / makeFrameName(i)).channels)
         << i;
   // The files themselves differ, since their headers contain the command.
   const nlohmann::json single =
@@ -183,7 +187,7 @@ TEST_F(TurntableCommand, RejectsFramesOfAnotherTurntable) {
   const Outcome again = runTurntable({"--output", "turn.exr", "--seed", "3", "--restart"});
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_NE(again.out.find("4 rendered now"), std::string::npos) << again.out;
-  EXPECT_EQ(readImage(folder / frameName(1)).header.at("seed"), "3");
+  EXPECT_EQ(readImage(folder / makeFrameName(1)).header.at("seed"), "3");
 
   folder.write("segments.seg.nrrd", makeSegments() + " ");
   const Outcome changed = runTurntable({"--output", "turn.exr", "--seed", "3"});
@@ -305,7 +309,7 @@ TEST_F(TurntableCommand, AutomaticViewStartsWithTheViewOfRender) {
                            "--size",      size,     "--output", file};
     arguments.insert(arguments.end(), focus.begin(), focus.end());
     ASSERT_EQ(run(arguments, folder.path()).status, 0);
-    EXPECT_LT((cameraDirection(file) - cameraDirection(frameName(0))).norm(), 1e-12)
+    EXPECT_LT((readCameraDirection(file) - readCameraDirection(makeFrameName(0))).norm(), 1e-12)
         << "depends on the size";
   }
 }
@@ -319,8 +323,8 @@ TEST_F(TurntableCommand, AutomaticViewShowsKneeCartilageFromAnterior) {
             kneeFolder().path())
             .status,
         0);
-    EXPECT_GT(cameraDirection("auto.exr").y(), std::cos(45.0 * pi / 180.0))
-        << cameraDirection("auto.exr");
+    EXPECT_GT(readCameraDirection("auto.exr").y(), std::cos(45.0 * pi / 180.0))
+        << readCameraDirection("auto.exr");
     EXPECT_EQ(readVector("auto.exr", "--up="), Vec3::UnitZ());
   }
 }

@@ -112,13 +112,14 @@ std::string findFile(pid_t thread, long long descriptor) {
                     : std::to_string(static_cast<int>(descriptor));
 }
 
-unsigned long long argument(const user_regs_struct& registers, int index) {
+unsigned long long readArgument(const user_regs_struct& registers, int index) {
   const unsigned long long all[] = {registers.rdi, registers.rsi, registers.rdx,
                                     registers.r10, registers.r8,  registers.r9};
   return all[index];
 }
 
 std::vector<sock_filter> makeFilter() {
+  // An instruction is its code, how many to skip if equal and if not, and its operand.
   constexpr auto load = static_cast<std::uint16_t>(BPF_LD | BPF_W | BPF_ABS);
   constexpr auto equal = static_cast<std::uint16_t>(BPF_JMP | BPF_JEQ | BPF_K);
   constexpr auto ret = static_cast<std::uint16_t>(BPF_RET | BPF_K);
@@ -156,7 +157,7 @@ std::string describeCall(pid_t thread, const user_regs_struct& registers) {
   const FileCall* call = findCall(registers.orig_rax);
   if (!call)
     return "call " + std::to_string(registers.orig_rax);
-  const unsigned long long about = argument(registers, call->argument);
+  const unsigned long long about = readArgument(registers, call->argument);
   switch (call->about) {
   case path:
     return std::string(call->name) + " " + readText(thread, about);

@@ -27,6 +27,7 @@ struct Target {
   Arguments arguments;   ///< arguments of a render or a comparison
 };
 
+/// Files in Testing/Data; its folder traps/ has the format variants (writeFormatVariants).
 class Samples {
 public:
   explicit Samples(const fs::path& data) : m_data(data) {}
@@ -188,7 +189,7 @@ Result runOne(const std::vector<Target>& targets, long number, const Workspace& 
   const Target& target = targets[static_cast<std::size_t>(number) % targets.size()];
   const Arguments arguments = prepare(target, number, workspace);
   const Files before = workspace.files();
-  const Outcome outcome = workspace.run(arguments, {});
+  const Outcome outcome = workspace.run(arguments, {}); // without a fault
   return {outcome.status, findViolation(outcome, before, workspace)};
 }
 

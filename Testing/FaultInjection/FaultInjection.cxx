@@ -53,7 +53,7 @@ constexpr FaultKind kinds[] = {
 struct Case {
   const Baseline* subject;
   const FaultKind* kind;
-  long number;
+  long number; ///< of the call, allocation or change at which the fault occurs, from 1
 };
 
 struct Result {

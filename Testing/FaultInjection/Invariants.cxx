@@ -24,7 +24,7 @@ std::vector<int> listAllowedStatuses(const Fault& fault) {
   case Fault::Kind::ignored:
     return {0};
   case Fault::Kind::signal:
-    return {fault.value == SIGPIPE ? 4 : 5};
+    return {fault.value == SIGPIPE ? 4 : 5}; // output error, stopped
   default:
     return {0, 2, 3, 4, 5};
   }

@@ -37,6 +37,7 @@ std::vector<Request> makeRequests() {
   const auto renderShard = [](const char* shard, const char* checkpoint) {
     return Arguments{"render", "knee.mrb", "--shard", shard, "--checkpoint", checkpoint};
   };
+  // Name, arguments, commands before, groups, stats, manifest, checkpoint, left checkpoint, inputs.
   Request phantomRequest = {"phantom", phantom, {concat(phantom, {"--edge", "2"})}, {{}}, "", ""};
   for (const char* ending :
        {".mrml", ".mrb", ".nrrd", ".seg.nrrd", ".vp", ".vp.json", "-roi.mrk.json"})
@@ -143,6 +144,7 @@ Baseline recordBaseline(const Request& request, const Tools& tools) {
   const Workspace workspace(tools);
   Files inputs = request.inputs;
   inputs.emplace("knee.mrb", readBytes(tools.data / "knee/knee.mrb"));
+  // The checkpoint files are inputs of merge; other requests have none.
   Baseline baseline = {&request, {}, {}, {"a.film", "b.film"}, {}};
   for (const auto& [name, content] : inputs)
     baseline.inputs.push_back(name);

@@ -36,14 +36,15 @@ std::string makeNifti() {
     std::memcpy(header.data() + at, &value, sizeof(value));
   };
   put(0, std::int32_t{348});
-  put(40, std::array<std::int16_t, 8>{3, 3, 3, 2, 1, 1, 1, 1});
-  put(70, std::int16_t{4}); // int16
-  put(72, std::int16_t{16});
-  put(76, std::array<float, 8>{1.0f, 1.0f, 1.0f, 2.0f, 1.0f, 1.0f, 1.0f, 1.0f});
-  put(108, 352.0f);          // offset of the voxels
-  put(112, 1.0f);            // slope
-  put(252, std::int16_t{1}); // qform
-  put(254, std::int16_t{1}); // sform
+  put(40, std::array<std::int16_t, 8>{3, 3, 3, 2, 1, 1, 1, 1}); // number of axes, sizes
+  put(70, std::int16_t{4});                                     // int16
+  put(72, std::int16_t{16});                                    // bits
+  put(76,
+      std::array<float, 8>{1.0f, 1.0f, 1.0f, 2.0f, 1.0f, 1.0f, 1.0f, 1.0f}); // handedness, spacings
+  put(108, 352.0f);                                                          // offset of the voxels
+  put(112, 1.0f);                                                            // slope
+  put(252, std::int16_t{1});                                                 // qform
+  put(254, std::int16_t{1});                                                 // sform
   put(280, std::array<float, 12>{1, 0, 0, -1, 0, 1, 0, -1, 0, 0, 2, -1});
   std::memcpy(header.data() + 344, "n+1", 4);
   return header + std::string("\1\0\2\0\3\0\4\0\5\0\6\0\7\0\10\0\11\0", 18) + std::string(18, '\0');
@@ -57,12 +58,14 @@ std::string makeMetaImage() {
          std::string(16, '\3');
 }
 
+/// `traps`: folder of the format variants.
 void makeVolumes(const fs::path& corpus, const fs::path& traps) {
   for (const auto& entry : fs::directory_iterator(traps)) {
     const std::string name = entry.path().filename().string();
     if (name == "detached.nhdr") {
       std::string text = readBytes(entry.path());
-      text.replace(text.find("detached.raw"), 12, "samples.raw");
+      const std::string data = "detached.raw";
+      text.replace(text.find(data), data.size(), "samples.raw");
       save(corpus / "Volume", name, "1" + text);
     } else if (name.ends_with(".seg.nrrd") || name == "labels.nrrd")
       save(corpus / "Segmentation", name, readBytes(entry.path()));
@@ -116,7 +119,7 @@ void makeReplies(const fs::path& corpus) {
   }
   save(corpus / "Transform", "composite", composite.bytes());
   for (const char* compressed : {"0", "1"}) {
-    ReplyWriter slice;
+    ReplyWriter slice; // the fields of DicomReader.cxx, in its order
     for (const char* text :
          {"1", compressed,    "1",  "CT", "head", "1.2.3",  "7",  "1\\2\\3", "1\\0\\0\\0\\1\\0",
           "1", "MONOCHROME2", "",   "8",  "8",    "0.5\\2", "16", "12",      "11",

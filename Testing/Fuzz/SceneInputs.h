@@ -11,7 +11,7 @@ namespace fenestra::fuzzing {
 inline void loadScene(const std::filesystem::path& path) {
   const Input input(path);
   const Volume volume = input.volume({}).volume;
-  const SceneSettings settings = input.settings({}, true);
+  const SceneSettings settings = input.settings({}, true); // including the camera
   input.transfer({}, {volume.minimum, volume.maximum});
   if (!allFinite(volume.grid.indexToWorld) ||
       (settings.crop && !allFinite(settings.crop->worldToBox)))

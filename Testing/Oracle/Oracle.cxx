@@ -101,17 +101,18 @@ private:
     }
   }
 
-  /// Extinction, mm^-1, of each component: clip weight (1 if unclipped) times w sigma(s).
+  /// Extinction, mm^-1, of each component: that of its transfer function times clip weight (1 if
+  /// unclipped), context style and label weight.
   Segments::Weights computeExtinctions(const Vec3& point) const {
     Segments::Weights all{};
     Segments::Weights fractions{1.0};
     if (isMixed())
       fractions = m_segments->at(point);
-    const double weight = m_clipping.clipWeight(point), thin = styleFactor(point);
+    const double weight = m_clipping.clipWeight(point), style = styleFactor(point);
     const double scalar = m_medium.scalar(point);
     for (std::size_t c = 0; c < m_components.size(); ++c)
       if (fractions[c] > 0.0)
-        all[c] = (m_components[c].isClipped ? weight : 1.0) * thin * fractions[c] *
+        all[c] = (m_components[c].isClipped ? weight : 1.0) * style * fractions[c] *
                  m_medium.extinction(m_components[c].transfer, point, scalar);
     return all;
   }
@@ -199,9 +200,9 @@ private:
   Rgb estimateAreaLight(const Vec3& point, const Scatterer& scatterer, Generator& generator) const {
     if (!m_lights.hasAreas())
       return Rgb::Zero();
-    const bool isToward = uniform(generator) < 0.5;
-    const Ray probe{point,
-                    isToward ? m_lights.sampleArea(point, generator) : scatterer.sample(generator)};
+    const bool isFromLights = uniform(generator) < 0.5;
+    const Ray probe{point, isFromLights ? m_lights.sampleArea(point, generator)
+                                        : scatterer.sample(generator)};
     const Rgb light = m_lights.areaRadiance(probe, findCollision(probe, generator));
     const double density = 0.5 * m_lights.areaPdf(probe) + 0.5 * scatterer.pdf(probe.direction);
     return light * scatterer.f(probe.direction) / density;

@@ -1,5 +1,5 @@
 #pragma once
-// Input of the oracle: data types of the product, but none of its algorithms.
+// Input of the oracle: Fenestra's data types, but none of its algorithms.
 
 #include "model/camera/Background.h"
 #include "model/camera/Camera.h"

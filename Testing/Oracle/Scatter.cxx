@@ -86,9 +86,9 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
   const auto smith = [a2](double cosine) {
     return 2.0 / (1.0 + std::sqrt(1.0 + a2 * (1.0 / (cosine * cosine) - 1.0)));
   };
-  const double normal = m_shading->coated ? 0.028 : 0.04;
-  const auto fresnel = [normal](double cosine) {
-    return normal + (1.0 - normal) * std::pow(1.0 - cosine, 5.0);
+  const double f0 = m_shading->coated ? 0.028 : 0.04;
+  const auto fresnel = [f0](double cosine) {
+    return f0 + (1.0 - f0) * std::pow(1.0 - cosine, 5.0);
   };
   const double glossy =
       d * fresnel(h.dot(outgoing)) * smith(cosIn) * smith(cosOut) / (4.0 * cosIn * cosOut);
@@ -97,7 +97,7 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
     const auto transmittance = [&](double cosine) {
       return 1.0 - w * evaluateCoat(*m_shading->coated, cosine);
     };
-    const double product = transmittance(cosIn) * transmittance(cosOut);
+    const double twoWay = transmittance(cosIn) * transmittance(cosOut);
     double integral = 0.0; // of 2 x transmittance(x), by the midpoint rule
     constexpr int steps = 64;
     for (int i = 0; i < steps; ++i)
@@ -106,7 +106,7 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
     for (int c = 0; c < 3; ++c)
       if (base[c] > 0.0)
         base[c] = 1.0 / (1.0 + (1.0 / m_albedo[c] - 1.0) / m_shading->oddsFactor);
-    return (m_shading->diffuse * base / pi * product / integral + w * glossy) * cosOut;
+    return (m_shading->diffuse * base / pi * twoWay / integral + w * glossy) * cosOut;
   }
   const double excess = std::max(1.0, m_shading->diffuse + m_shading->specular);
   return (m_shading->diffuse * m_albedo / pi + w * glossy) / excess * cosOut;

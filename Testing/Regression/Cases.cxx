@@ -85,6 +85,7 @@ Image renderCase(const RegressionCase& c, std::uint64_t seed, std::uint64_t samp
 }
 
 double Agreement::probability() const {
+  // 1 - (1 - minimum)^3, precise for small probabilities.
   return -std::expm1(3.0 * std::log1p(-std::min({pixels, tiles, mean})));
 }
 

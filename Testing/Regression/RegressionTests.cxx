@@ -21,7 +21,7 @@ std::string describe(const Agreement& a) {
   return text.str();
 }
 
-std::filesystem::path resultFolder(const RegressionCase& c) {
+std::filesystem::path makeResultFolder(const RegressionCase& c) {
   return std::filesystem::path(FENESTRA_REGRESSION_RESULTS) / c.name;
 }
 
@@ -40,7 +40,7 @@ class Regression : public ::testing::TestWithParam<RegressionCase> {};
 
 TEST_P(Regression, AgreesWithItsBaseline) {
   const RegressionCase& c = GetParam();
-  const std::filesystem::path folder = resultFolder(c);
+  const std::filesystem::path folder = makeResultFolder(c);
   const Image image =
       renderCase(c, seedBase(), reduceSamples(c.samples), dataFolder(), folder / "render.exr");
   const Image baseline = readImage(baselinePath(c));
@@ -54,7 +54,6 @@ INSTANTIATE_TEST_SUITE_P(Cases, Regression, ::testing::ValuesIn(readCases()),
                          [](const auto& info) { return info.param.name; });
 
 // ---- mutations
-// ----------------------------------------------------------------------------------
 
 /// Replaces the first occurrence of a text in a file.
 void replaceIn(const std::filesystem::path& path, const std::string& from, const std::string& to) {
@@ -108,7 +107,7 @@ void PrintTo(const Mutation& mutation, std::ostream* out) {
 class RegressionMutation : public ::testing::TestWithParam<Mutation> {};
 
 TEST_P(RegressionMutation, DiffersFromTheBaseline) {
-  if (sampleDivisor() > 1)
+  if (slowdownFactor() > 1)
     GTEST_SKIP() << "FENESTRA_BRIEF leaves too few samples";
   const std::vector<RegressionCase> cases = readCases();
   const auto it = std::find_if(cases.begin(), cases.end(), [](const RegressionCase& c) {

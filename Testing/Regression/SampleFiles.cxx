@@ -50,7 +50,6 @@ Mat3 makeTilt() {
 }
 
 // ---- samples
-// ------------------------------------------------------------------------------------
 
 using Value = std::function<double(const Vec3&)>;
 
@@ -84,7 +83,7 @@ std::string makeTextSamples(const Axes& axes, const Value& value) {
 
 std::string compressGzip(const std::string& bytes) {
   z_stream stream{};
-  constexpr int gzipFormat = 15 + 16;
+  constexpr int gzipFormat = 15 + 16; // window bits, + 16: gzip header
   if (deflateInit2(&stream, 9, Z_DEFLATED, gzipFormat, 8, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::runtime_error("deflateInit2 failed");
   std::string result(deflateBound(&stream, bytes.size()), '\0');
@@ -101,7 +100,6 @@ std::string compressGzip(const std::string& bytes) {
 }
 
 // ---- NRRD
-// ---------------------------------------------------------------------------------------
 
 struct Nrrd {
   std::string type;
@@ -162,16 +160,15 @@ void writeVolume(const std::filesystem::path& path, const Nrrd& nrrd, double off
                                 nrrd.endian == "big" ? std::endian::big : std::endian::little);
   if (nrrd.encoding == "gzip")
     samples = compressGzip(samples);
-  const std::string separator = path.extension() == ".nhdr" ? "" : "\n" + samples;
-  write(path, makeHeader(nrrd) + separator);
-  if (path.extension() == ".nhdr")
+  const bool isDetached = path.extension() == ".nhdr";
+  write(path, makeHeader(nrrd) + (isDetached ? "" : "\n" + samples));
+  if (isDetached)
     write(std::filesystem::path(path).replace_extension(".raw"), samples);
 }
 
 // ---- format variants
-// --------------------------------------------------------------------------------------
 
-/// Writes volumes with different directions and spacings of their axes.
+/// Writes volumes with different directions and spacings of their axes. `s`: spacing, mm.
 void writeGeometries(const std::filesystem::path& folder, double s) {
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ(), cube = Vec3::Constant(s);
   writeVolume<std::uint8_t>(folder / "plain.nrrd", {"uint8", makeAxes(identity, cube)});

@@ -88,6 +88,7 @@ TEST(SlicerFolder, OnlyFoldersOfCrashedSessionsAreRemoved) {
 
 TEST(SlicerFolder, ForeignFoldersAndLinksAreLeftAlone) {
   const TemporaryFolder parent;
+  // A young folder has no lock file yet.
   for (const char* name : {"session-young", "other-a", "elsewhere"})
     std::filesystem::create_directory(parent / name);
   parent.write("other-a/lock", "");

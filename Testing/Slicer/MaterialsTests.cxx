@@ -32,7 +32,7 @@ using Materials = qSlicerFenestraMaterials;
 const QString program = FENESTRA_EXECUTABLE;
 
 bool waitFor(const std::function<bool()>& condition) {
-  const int timeoutMs = 30000 * static_cast<int>(testing::sampleDivisor());
+  const int timeoutMs = 30000 * static_cast<int>(testing::slowdownFactor());
   QElapsedTimer watch;
   watch.start();
   while (!condition() && watch.elapsed() < timeoutMs)
@@ -44,7 +44,7 @@ enum Column { name, material, color, clip, reset };
 
 /// Ids and names that would need escaping in a shell, a list or JSON.
 const std::string awkward = "a, \"b\": c=d; $HOME 'e' \\, \xc3\xa9";
-std::vector<SlicerExport::Segment> segments() {
+std::vector<SlicerExport::Segment> makeSegments() {
   return {{"Segment_1", "Liver", 1, 0, "", {0.9, 0.1, 0.1}},
           {awkward, "Aorta: 'x', \"y\"", 2, 0, "", {0.5, 0.5, 0.5}},
           {"Segment_3", "Thing", 3, 0, "", {0.2, 0.4, 0.8}}};
@@ -72,14 +72,14 @@ qFenestraMaterials queryMaterials(const std::vector<SlicerExport::Segment>& all,
 
 /// The renderer's materials for the segments, queried once.
 const qFenestraMaterials& knownMaterials() {
-  static const qFenestraMaterials materials = queryMaterials(segments(), TemporaryFolder());
+  static const qFenestraMaterials materials = queryMaterials(makeSegments(), TemporaryFolder());
   return materials;
 }
 
 class SlicerMaterials : public ::testing::Test {
 protected:
   SlicerMaterials() {
-    table.list(toPanelSegments(segments()));
+    table.list(toPanelSegments(makeSegments()));
     table.setKnownMaterials(knownMaterials());
   }
 
@@ -240,7 +240,7 @@ TEST_F(SlicerMaterials, CancelledDialogChangesNothing) {
 TEST_F(SlicerMaterials, RowsFollowTheSegments) {
   setMaterial(0, "spleen");
   setClip(1, false);
-  auto all = segments();
+  auto all = makeSegments();
   all[1].name = "<b>Aorta</b>";
   table.list(toPanelSegments(all));
   EXPECT_EQ(text(1), "<b>Aorta</b>");
@@ -252,7 +252,7 @@ TEST_F(SlicerMaterials, RowsFollowTheSegments) {
   EXPECT_EQ(text(0), "<b>Aorta</b>");
   EXPECT_FALSE(isClipped(0));
   EXPECT_EQ(arguments(), (Strings{"--material=" + awkward + ": clip=no", "--materials=auto"}));
-  table.list(toPanelSegments(segments())); // restored, as by Undo
+  table.list(toPanelSegments(makeSegments())); // restored, as by Undo
   EXPECT_EQ(arguments(), both);
   table.list({});
   EXPECT_FALSE(table.isEnabled());
@@ -288,7 +288,7 @@ TEST_F(SlicerMaterials, FlagsMayBeShownBeforeTheSegments) {
   Materials early;
   early.show(flags);
   early.show({}); // nothing is passed without segments
-  early.list(toPanelSegments(segments()));
+  early.list(toPanelSegments(makeSegments()));
   Flags written;
   early.take(written);
   EXPECT_EQ(written, flags);
@@ -321,7 +321,7 @@ protected:
       (*labels)[i] = static_cast<std::uint8_t>(1 + i % 9 / 3);
     layer.labels.data = {labels, labels->data()};
     contents.segmentation.layers = {layer};
-    contents.segmentation.segments = segments();
+    contents.segmentation.segments = makeSegments();
     scene = SlicerExport::Writer(folder.path()).write(contents);
   }
 

@@ -26,9 +26,9 @@ namespace {
 using Kind = qFenestraOutcome::Kind;
 
 const QString program = FENESTRA_EXECUTABLE;
-const int timeoutMs = 30000 * static_cast<int>(testing::sampleDivisor());
+const int timeoutMs = 30000 * static_cast<int>(testing::slowdownFactor());
 const int maxStopMs =
-    1000 * static_cast<int>(testing::sampleDivisor()); ///< ms; 200 on an idle machine
+    1000 * static_cast<int>(testing::slowdownFactor()); ///< ms; 200 on an idle machine
 
 /// Runs the event loop until the condition holds; false after timeoutMs.
 bool waitFor(const std::function<bool()>& condition) {

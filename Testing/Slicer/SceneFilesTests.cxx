@@ -13,6 +13,7 @@
 namespace fenestra {
 namespace {
 
+/// Image of ascending values; its matrix has numbers that need all digits.
 SlicerExport::Image makeRamp(std::array<std::size_t, 3> size) {
   SlicerExport::Image image;
   image.type = "int16";
@@ -24,11 +25,12 @@ SlicerExport::Image makeRamp(std::array<std::size_t, 3> size) {
   return image;
 }
 
-SlicerExport::Layer makeBlock(std::array<long, 3> begin, std::uint8_t value) {
+/// Layer of 2 x 2 x 2 voxels, all with one label, from grid index `begin`.
+SlicerExport::Layer makeBlock(std::array<long, 3> begin, std::uint8_t label) {
   SlicerExport::Layer layer;
   layer.labels.type = "uint8";
   layer.labels.size = {2, 2, 2};
-  const auto values = std::make_shared<std::vector<std::uint8_t>>(8, value);
+  const auto values = std::make_shared<std::vector<std::uint8_t>>(8, label);
   layer.labels.data = std::shared_ptr<const void>(values, values->data());
   layer.begin = begin;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -48,7 +50,7 @@ TEST(SlicerSceneFiles, ImageRoundTripsBitForBit) {
   EXPECT_EQ(std::memcmp(again.data.get(), image.data.get(), image.bytes()), 0);
 }
 
-TEST(SlicerSceneFiles, DamagedNrrdIsRejected) {
+TEST(SlicerSceneFiles, DamagedNrrdAndMissingFolderAreRejected) {
   const TemporaryFolder folder;
   SlicerExport::writeNrrd(makeRamp({3, 4, 5}), folder / "image.nrrd");
   std::filesystem::resize_file(folder / "image.nrrd",
@@ -69,15 +71,15 @@ TEST(SlicerSceneFiles, ComposedLayersKeepTheirPositions) {
   EXPECT_EQ(both.size, (std::array<std::size_t, 3>{3, 3, 2}));
   EXPECT_EQ(both.ijkToRas[7], -1.0);
   const auto* labels = static_cast<const std::uint8_t*>(both.data.get());
-  const auto at = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t layer) {
+  const auto labelAt = [&](std::size_t i, std::size_t j, std::size_t k, std::size_t layer) {
     return int(labels[((k * 3 + j) * 3 + i) * 2 + layer]);
   };
-  EXPECT_EQ(at(0, 1, 0, 0), 1);
-  EXPECT_EQ(at(0, 0, 0, 0), 0);
-  EXPECT_EQ(at(1, 0, 0, 1), 2);
-  EXPECT_EQ(at(0, 1, 0, 1), 0);
-  EXPECT_EQ(at(1, 1, 1, 0), 1); // the layers overlap here
-  EXPECT_EQ(at(1, 1, 1, 1), 2);
+  EXPECT_EQ(labelAt(0, 1, 0, 0), 1);
+  EXPECT_EQ(labelAt(0, 0, 0, 0), 0);
+  EXPECT_EQ(labelAt(1, 0, 0, 1), 2);
+  EXPECT_EQ(labelAt(0, 1, 0, 1), 0);
+  EXPECT_EQ(labelAt(1, 1, 1, 0), 1); // the layers overlap here
+  EXPECT_EQ(labelAt(1, 1, 1, 1), 2);
 }
 
 TEST(SlicerSceneFiles, UnchangedVolumeIsLinked) {
@@ -96,7 +98,7 @@ TEST(SlicerSceneFiles, UnchangedVolumeIsLinked) {
                                            third.parent_path() / "volume.nrrd"));
 }
 
-TEST(SlicerSceneFiles, TagsOfSegmentsAreWritten) {
+TEST(SlicerSceneFiles, TagsOfSegmentsAreWrittenOnOneLine) {
   const TemporaryFolder folder;
   SlicerExport::Contents contents;
   contents.volume = makeRamp({3, 4, 5});
@@ -113,16 +115,17 @@ TEST(SlicerSceneFiles, TagsOfSegmentsAreWritten) {
   EXPECT_EQ(text.find("Segment1_Tags"), std::string::npos); // has no tags
 }
 
-TEST(SlicerSceneFiles, ColorsOfSegmentsAreWrittenAsSlicerDoes) {
+TEST(SlicerSceneFiles, SegmentNamesHaveSlicersColorsAndNewLabelValues) {
   const TemporaryFolder folder;
   SlicerExport::writeSegmentNames(
+      // label 7 of layer 3, and default label, layer and color
       {{"a", "A", 7, 3, "", {0.9450980392, 0.5, 1.0 / 3.0}}, {"b", "B"}},
       folder / "names.seg.nrrd");
-  const std::string text = readBytes(folder / "names.seg.nrrd");
+  const std::string header = readBytes(folder / "names.seg.nrrd");
   for (const char* field :
        {"Segment0_Color:=0.945098 0.5 0.333333", "Segment0_LabelValue:=1", "Segment0_Layer:=0",
         "Segment1_Color:=0.5 0.5 0.5", "Segment1_LabelValue:=2"})
-    EXPECT_NE(text.find(std::string("\n") + field + "\n"), std::string::npos) << field;
+    EXPECT_NE(header.find(std::string("\n") + field + "\n"), std::string::npos) << field;
 }
 
 } // namespace

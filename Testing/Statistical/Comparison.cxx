@@ -113,7 +113,7 @@ double compareTiles(const Outcome& outcome, int size, Visit&& visit) {
   int channel = outcome.combination.index;
   for (int top = 0; top < outcome.reference.height; top += size)
     for (int left = 0; left < outcome.reference.width; left += size) {
-      const Sums a = sumPixels(outcome.product, left, top, size).withBlocks(Sampler::blockSize);
+      const Sums a = sumPixels(outcome.fenestra, left, top, size).withBlocks(Sampler::blockSize);
       const Sums b = sumPixels(outcome.reference, left, top, size);
       for (int c = 0; c < 3; ++c)
         minimum.add(welchProbability(a.channel(c, moments), b.channel(c, moments)));
@@ -127,21 +127,21 @@ double compareTiles(const Outcome& outcome, int size, Visit&& visit) {
 
 void compareImage(Outcome& outcome) {
   const int size = outcome.reference.width;
-  const Sums a = sumPixels(outcome.product, 0, 0, size).withBlocks(Sampler::blockSize);
+  const Sums a = sumPixels(outcome.fenestra, 0, 0, size).withBlocks(Sampler::blockSize);
   const Sums b = sumPixels(outcome.reference, 0, 0, size);
   const PathMoments moments = computePathMoments(outcome.reference);
   MinProbability minimum;
   for (int c = 0; c < 3; ++c)
     minimum.add(welchProbability(a.channel(c, moments), b.channel(c, moments)));
-  const double collidedFraction =
-      0.5 * (a.first[0] / a.pixels + b.first[0] / b.pixels); // colliding paths
+  const double collidedFraction = 0.5 * (a.first[0] / a.pixels + b.first[0] / b.pixels);
   // Both renderers sample first collisions from the same distribution: the oracle's variance
-  // applies to both.
+  // applies to both. If the oracle's paths are all equal, it is that of a quantity that is
+  // equal in all colliding paths and 0 in all others.
   for (int i = 0; i < 3; ++i) {
     double variance = b.firstVariance[i] / (b.pixels * b.pixels);
-    if (variance == 0.0) { // the oracle's paths are all equal: use both renderers' means
+    if (variance == 0.0) {
       const double mean = 0.5 * (a.first[i] + b.first[i]) / a.pixels;
-      const bool isRareMedium = i == 2 && b.first[i] == 0.0; // with albedo, amid black medium
+      const bool isRareMedium = i == 2 && b.first[i] == 0.0; // albedo, amid black medium
       variance = isRareMedium ? mean * (1.0 - mean) / b.samples
                  : collidedFraction > 0.0
                      ? (1.0 - collidedFraction) * mean * mean / collidedFraction / b.samples
@@ -153,22 +153,22 @@ void compareImage(Outcome& outcome) {
   outcome.image = minimum.corrected();
 
   const int channel = outcome.combination.index % 3;
-  const Estimated product = a.channel(channel), reference = b.channel(channel);
-  const std::optional<double> probability = welchProbability(product, reference);
-  const double difference = product.mean - reference.mean;
+  const Estimated fenestra = a.channel(channel), reference = b.channel(channel);
+  const std::optional<double> probability = welchProbability(fenestra, reference);
+  const double difference = fenestra.mean - reference.mean;
   if (reference.mean > 0.0)
     outcome.difference = difference / reference.mean;
   if (probability)
-    outcome.z = difference / std::sqrt(product.variance + reference.variance);
+    outcome.z = difference / std::sqrt(fenestra.variance + reference.variance);
   if (hasManyPaths(b.channel(channel, moments)))
     outcome.imageProbability = probability;
 }
 
-void compareDepths(const std::vector<double>& product, const std::vector<double>& reference,
+void compareDepths(const std::vector<double>& fenestra, const std::vector<double>& reference,
                    Outcome& outcome) {
   for (std::size_t i = 0; i < reference.size(); ++i) {
-    const double difference = std::abs(product[i] - reference[i]);
-    if (std::isinf(product[i]) && std::isinf(reference[i]))
+    const double difference = std::abs(fenestra[i] - reference[i]);
+    if (std::isinf(fenestra[i]) && std::isinf(reference[i]))
       continue;
     if (difference < 0.01)
       outcome.depthDifference = std::max(outcome.depthDifference, difference);
@@ -205,14 +205,14 @@ Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings,
   Outcome outcome{.combination = c,
                   .tileProbabilities = {},
                   .imageProbability = {},
-                  .product =
-                      toEstimates(scene.product.render(renderSettings).film, settings.samples),
+                  .fenestra =
+                      toEstimates(scene.fenestra.render(renderSettings).film, settings.samples),
                   .reference = std::move(oracleRender.image)};
   outcome.pixels = compareTiles(outcome, 1, [](double) {});
   outcome.tiles =
       compareTiles(outcome, tileSize, [&](double p) { outcome.tileProbabilities.push_back(p); });
   compareImage(outcome);
-  compareDepths(scene.productDepths, oracleRender.depths, outcome);
+  compareDepths(scene.fenestraDepths, oracleRender.depths, outcome);
   return outcome;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Renders a combination of the matrix with the product (Fenestra) and with the oracle, and tests
+// Renders a combination of the matrix with Fenestra and with the oracle (../Oracle), and tests
 // their difference at three scales: pixels, tiles of 4 x 4 pixels, complete image.
 
 #include "Matrix.h"
@@ -17,7 +17,7 @@ namespace fenestra::testing {
 struct MatrixSettings {
   std::uint64_t samples = 128; ///< per pixel, of each renderer
   std::uint64_t seed = 1;
-  Integrator integrator = Integrator::simd; ///< of the product
+  Integrator integrator = Integrator::simd; ///< of Fenestra
 };
 
 struct Outcome {
@@ -29,13 +29,13 @@ struct Outcome {
   /// means of many paths (hasManyPaths): those of few paths are too rarely near 0 or 1.
   std::vector<double> tileProbabilities;
   std::optional<double> imageProbability;
-  /// One channel of the image: (product - oracle) / oracle, and / the difference's standard error.
+  /// One channel of the image: (Fenestra - oracle) / oracle, and / the difference's standard error.
   double difference = 0.0, z = 0.0;
   /// Largest difference of the two depth buffers, mm, over samples that both classify alike as
   /// focus or not; and number of samples that they classify differently.
   double depthDifference = 0.0;
   int depthDisagreements = 0;
-  oracle::Estimates product, reference; ///< for error images
+  oracle::Estimates fenestra, reference; ///< for error images
 
   /// Corrected p-value of all three scales.
   double probability() const;

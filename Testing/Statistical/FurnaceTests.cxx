@@ -13,7 +13,7 @@ namespace {
 enum class MediumKind { homogeneous, heterogeneous, spikes };
 enum class ClipKind { none, plane, cutaway, surface };
 
-using Case = std::tuple<MediumKind, Projection, ClipKind, double, bool>;
+using Case = std::tuple<MediumKind, Projection, ClipKind, double, bool>; ///< last: g, isCropped
 
 Volume makeMediumVolume(MediumKind kind) {
   const Grid grid = makeCenteredGrid({20, 24, 18}, {1.0, 0.8, 1.3});

@@ -411,7 +411,7 @@ MatrixScene makeMatrixScene(const Combination& c) {
   scene.settings.path.background = makeBackground(c.background);
   scene.settings.path.bounces = c.bounces;
   if (c.isCropped)
-    scene.product.crop = CropBox(makeCrop(generator));
+    scene.fenestra.crop = CropBox(makeCrop(generator));
   placeClip(c, generator, scene);
   styleContext(c.style, scene);
   placeSegments(c, generator, scene);
@@ -420,14 +420,14 @@ MatrixScene makeMatrixScene(const Combination& c) {
 
 oracle::OracleScene MatrixScene::toOracleScene() const {
   std::optional<Affine> crop;
-  if (product.crop)
-    crop = product.crop->boxToWorld;
-  return {product.volume,
-          product.transfer,
-          product.lights,
-          product.pose,
-          product.width,
-          product.height,
+  if (fenestra.crop)
+    crop = fenestra.crop->boxToWorld;
+  return {fenestra.volume,
+          fenestra.transfer,
+          fenestra.lights,
+          fenestra.pose,
+          fenestra.width,
+          fenestra.height,
           clip,
           crop,
           settings.path.background,

@@ -1,5 +1,5 @@
 #pragma once
-// Matrix of small scenes in which the product is compared with the oracle: all kinds of views,
+// Matrix of small scenes in which Fenestra is compared with the oracle: all kinds of views,
 // clips, lights and media, in evenly distributed combinations (a Latin design).
 //
 // Each factor runs through its levels in blocks, and each block has its own order. Over n
@@ -77,13 +77,13 @@ std::string describe(const Combination& c);
 
 /// One scene for both renderers.
 struct MatrixScene {
-  TestScene product;
+  TestScene fenestra;      ///< Fenestra's input
   RenderSettings settings; ///< background and bounces
   oracle::ClipDescription clip = {};
   std::optional<oracle::StyleDescription> style = {};
   std::optional<oracle::ComponentsDescription> components = {};
   /// Buffer of a depth clip, mm, row by row, for comparison with the oracle's.
-  std::vector<double> productDepths = {};
+  std::vector<double> fenestraDepths = {};
 
   oracle::OracleScene toOracleScene() const;
 };

@@ -22,7 +22,7 @@ Mask makeFocus() {
   return mask;
 }
 
-/// Describes the product's exact surface by its depths at the samples. Between samples, in
+/// Describes Fenestra's exact surface by its depths at the samples. Between samples, in
 /// silhouette cells, the oracle computes the depth itself.
 void describeExact(const ClipDepth& surface, oracle::DepthClip& clip) {
   const DepthBuffer& buffer = *surface.buffer;
@@ -85,25 +85,25 @@ SurfaceOptions makeSurfaceOptions(const Combination& c) {
 } // namespace
 
 void placeClip(const Combination& c, Generator& generator, MatrixScene& scene) {
-  TestScene& product = scene.product;
-  const Camera camera(product.pose, product.width, product.height);
+  TestScene& fenestra = scene.fenestra;
+  const Camera camera(fenestra.pose, fenestra.width, fenestra.height);
   if (c.clip == ClipFactor::none)
     return;
   if (c.clip == ClipFactor::plane) {
     const Vec3 point = randomDirection(generator), normal = randomDirection(generator);
     const ClipEdge edge = makeEdge(c.edge);
-    product.clip = ClipPlane{camera, point, normal, edge};
+    fenestra.clip = ClipPlane{camera, point, normal, edge};
     scene.clip = oracle::PlaneClip{point, normal, {edge.ghost, edge.softness}};
     return;
   }
   const SurfaceOptions options = makeSurfaceOptions(c);
-  const ClippingSurface surface =
-      buildClippingSurface(camera, Domain(product.volume.grid, product.crop), makeFocus(), options);
-  product.clip = surface.clip;
+  const ClippingSurface surface = buildClippingSurface(
+      camera, Domain(fenestra.volume.grid, fenestra.crop), makeFocus(), options);
+  fenestra.clip = surface.clip;
   scene.clip = describeDepth(c, surface, options);
   const DepthBuffer& buffer = *std::get<ClipDepth>(surface.clip).buffer;
   for (std::int64_t i = 0; i < buffer.size(); ++i)
-    scene.productDepths.push_back(buffer.at(i));
+    scene.fenestraDepths.push_back(buffer.at(i));
 }
 
 void styleContext(StyleFactor factor, MatrixScene& scene) {
@@ -112,7 +112,7 @@ void styleContext(StyleFactor factor, MatrixScene& scene) {
   const double extinction = factor == StyleFactor::desaturated ? 1.0 : 0.3;
   const double saturation = factor == StyleFactor::thin ? 1.0 : 0.2;
   scene.style = {makeFocus(), extinction, saturation};
-  scene.product.style = {std::make_shared<const Mask>(makeFocus()), extinction, saturation};
+  scene.fenestra.style = {std::make_shared<const Mask>(makeFocus()), extinction, saturation};
 }
 
 } // namespace fenestra::testing

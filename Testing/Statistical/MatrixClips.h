@@ -1,5 +1,5 @@
 #pragma once
-// Clips and context styles of the matrix's scenes, for the product and as descriptions for the
+// Clips and context styles of the matrix's scenes, for Fenestra and as descriptions for the
 // oracle.
 
 #include "Matrix.h"

@@ -101,7 +101,7 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
   labels =
       Grid(labels.size, makeRotation(uniform(generator, 0.0, 6.0), randomDirection(generator)) *
                             labels.indexToWorld);
-  const TransferFunction& volume = scene.product.transfer;
+  const TransferFunction& volume = scene.fenestra.transfer;
   std::vector<LabelWeights::Part> parts;
   Tint tint{{}, {std::nullopt}};
   Mixture mixture{{}, {{volume}}};
@@ -127,9 +127,9 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
   const auto weights = std::make_shared<const LabelWeights>(makeLabelWeights(parts));
   tint.weights = mixture.weights = weights;
   if (c.hasSegmentMedia)
-    scene.product.mixture = std::move(mixture);
+    scene.fenestra.mixture = std::move(mixture);
   else
-    scene.product.tint = std::move(tint);
+    scene.fenestra.tint = std::move(tint);
   scene.components = std::move(all);
 }
 

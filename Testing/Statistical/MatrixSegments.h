@@ -1,5 +1,5 @@
 #pragma once
-// Segments of the matrix's scenes, for the product and as descriptions for the oracle.
+// Segments of the matrix's scenes, for Fenestra and as descriptions for the oracle.
 
 #include "MatrixClips.h"
 

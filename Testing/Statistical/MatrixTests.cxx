@@ -1,4 +1,4 @@
-// Compares the product with the oracle in all combinations of the matrix.
+// Compares Fenestra with the oracle in all combinations of the matrix.
 
 #include "Comparison.h"
 #include "EstimateImages.h"
@@ -21,15 +21,15 @@ std::string writeErrorImages(const Outcome& c) {
   const std::filesystem::path folder =
       std::filesystem::path(FENESTRA_MATRIX_RESULTS) / std::to_string(c.combination.index);
   std::filesystem::create_directories(folder);
-  const Image product = toImage(c.product), reference = toImage(c.reference);
-  writeImage(product, {}, folder / "product.exr");
+  const Image fenestra = toImage(c.fenestra), reference = toImage(c.reference);
+  writeImage(fenestra, {}, folder / "fenestra.exr");
   writeImage(reference, {}, folder / "oracle.exr");
-  writeImage(differenceImage(product, reference), {}, folder / "z.png", {DisplayView::standard});
-  return "see product.exr, oracle.exr and z.png in " + folder.string();
+  writeImage(differenceImage(fenestra, reference), {}, folder / "z.png", {DisplayView::standard});
+  return "see fenestra.exr, oracle.exr and z.png in " + folder.string();
 }
 
 /// Oracle's render of a combination, computed at the first call. Its seed does not depend on the
-/// product's integrator: both integrators are compared with the same render.
+/// renderer under test's integrator: both integrators are compared with the same render.
 const OracleRender& findOracleRender(const Combination& c, const MatrixSettings& settings) {
   static std::map<int, OracleRender> renders;
   const auto found = renders.find(c.index);

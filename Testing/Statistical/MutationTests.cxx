@@ -1,6 +1,6 @@
 // Mutation testing: the suite of MatrixTests must find each error of Mutations/mutations.json. One
 // build contains all of them (Mutations/ApplyMutations.cmake). Each is switched on for one
-// combination after another, until the product's image differs from the oracle's as significantly
+// combination after another, until Fenestra's image differs from the oracle's as significantly
 // as the suite requires. An entry's "integrator" is the one in which it shows: "simd" (the
 // default), "scalar" or "both". Entries with "shows": "estimated error" affect no mean; they must
 // show in the images' standard errors (ErrorRatio.h).

@@ -74,7 +74,8 @@ bool hasReferences() {
   return std::filesystem::exists(std::string(FENESTRA_REFERENCE) + "/S1.arguments");
 }
 
-/// Appends a row to references.csv, if a report is requested; `labels`: "renderer,scene".
+/// Appends a row to references.csv, if a report is requested; `labels`: "renderer,scene";
+/// renderers are "product" (Fenestra) and "oracle".
 void appendRecord(const std::string& labels, const ZStatistics& z) {
   if (const std::optional<std::filesystem::path> folder = reportFolder())
     std::ofstream(*folder / "references.csv", std::ios::app)
@@ -115,15 +116,15 @@ TEST_P(Reference, ImageAgreesWithinErrors) {
     GTEST_SKIP() << "no reference images at " << FENESTRA_REFERENCE;
   // Near the thin shells of S2, samples are very skewed: the mean of z reaches 0 after thousands of
   // samples for a pixel, and after hundreds for a tile.
-  const Bounds bounds = sampleDivisor() > 1 ? Bounds{16, 0.3, 0.2}
-                        : isLongRun()       ? Bounds{1, 0.02, 0.03}
-                                            : Bounds{4, 0.07, 0.05};
+  const Bounds bounds = slowdownFactor() > 1 ? Bounds{16, 0.3, 0.2}
+                        : isLongRun()        ? Bounds{1, 0.02, 0.03}
+                                             : Bounds{4, 0.07, 0.05};
   expectAgreement(renderReference(GetParam()), GetParam(), bounds,
                   std::string("product,") + GetParam().name);
 }
 
 std::uint64_t chooseSamples(std::uint64_t few, std::uint64_t many) {
-  return sampleDivisor() > 1 ? 8 : isLongRun() ? many : few;
+  return slowdownFactor() > 1 ? 8 : isLongRun() ? many : few;
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Reference,

@@ -25,7 +25,7 @@ std::optional<double> welchProbability(const Estimated& one, const Estimated& ot
   const Estimated a = withRareEvents(one, other), b = withRareEvents(other, one);
   const double difference = a.mean - b.mean;
   const double variance = a.variance + b.variance;
-  // Rounding error of equal numbers: the product's SIMD code computes in float.
+  // Rounding error of equal numbers: Fenestra's SIMD code computes in float.
   const double rounding = 1e-6 * std::max(std::abs(a.mean), std::abs(b.mean));
   if (std::abs(difference) <= rounding && variance <= square(rounding))
     return std::nullopt;
@@ -37,14 +37,16 @@ std::optional<double> welchProbability(const Estimated& one, const Estimated& ot
   const double satterthwaite = square(variance) / (termOfVariance(a) + termOfVariance(b));
   const double all = a.samples + b.samples;
   const double mean = (a.samples * a.mean + b.samples * b.mean) / all;
-  const double perSample = (square(a.samples) * a.variance + square(b.samples) * b.variance) / all;
+  const double sampleVariance =
+      (square(a.samples) * a.variance + square(b.samples) * b.variance) / all;
   const double brightPaths =
-      std::min(a.samples, b.samples) * std::min(1.0, square(mean) / perSample);
-  const auto countEvenPaths = [](const Estimated& e) {
+      std::min(a.samples, b.samples) * std::min(1.0, square(mean) / sampleVariance);
+  const auto limitBySkewness = [](const Estimated& e) {
     return e.samples / std::max(square(e.skewness), 1e-9);
   };
-  return studentTail(difference / std::sqrt(variance),
-                     std::min({satterthwaite, brightPaths, countEvenPaths(a), countEvenPaths(b)}));
+  return studentTail(
+      difference / std::sqrt(variance),
+      std::min({satterthwaite, brightPaths, limitBySkewness(a), limitBySkewness(b)}));
 }
 
 bool hasManyPaths(const Estimated& e) {

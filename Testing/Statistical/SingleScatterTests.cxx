@@ -1,6 +1,6 @@
 // Single scattering in a homogeneous slab under parallel light, against the closed form. T is the
-// thickness in free paths, F the irradiance on a plane that faces the light, mu0 the light's cosine
-// to the slab's normal, and p the phase function:
+// thickness in free paths, w the albedo, F the irradiance on a plane that faces the light, mu and
+// mu0 the view's and the light's cosines to the slab's normal, and p the phase function:
 //   reflected:   I(mu) = w p F mu0 / (mu + mu0) (1 - exp(-T / mu - T / mu0))
 //   transmitted: I(mu) = w p F mu0 / (mu - mu0) (exp(-T / mu) - exp(-T / mu0))
 // (Chandrasekhar, Radiative Transfer, 1960, ch. IX: the first of successive scatterings).
@@ -23,7 +23,7 @@ TEST_P(SingleScatter, RadianceEqualsClosedForm) {
   const double thickness = 1.5;
   const Rgb albedo(1.0, 0.6, 0.2);
   const Rgb irradiance(1.0, 2.0, 3.0);
-  TestScene scene = makeInfiniteSlab(thickness, albedo);
+  TestScene scene = makeWideSlab(thickness, albedo);
   scene.transfer.g = g;
   std::uint64_t seed = 5300 + static_cast<std::uint64_t>(100.0 * (g + 1.0));
   for (const double mu0 : {1.0, 0.5})
@@ -42,7 +42,7 @@ TEST_P(SingleScatter, RadianceEqualsClosedForm) {
                   : mu0 / (mu + mu0) * -std::expm1(-thickness / mu - thickness / mu0);
           const Rgb expected = albedo * irradiance *
                                (henyeyGreenstein(g, lightDirection.dot(-viewDirection)) * layer);
-          expectMean(renderMean(scene, 1500, seed++, 1), expected, 0.012);
+          expectMean(renderMean(scene, 1500, seed++, /*bounces*/ 1), expected, 0.012);
         }
 }
 
@@ -63,7 +63,7 @@ RgbEstimate averagePixels(const Film& film) {
 TEST(SingleScatterOfLights, StratifiedLightsAddUp) {
   const double thickness = 1.5;
   const Rgb albedo(1.0, 0.6, 0.2);
-  TestScene scene = makeInfiniteSlab(thickness, albedo);
+  TestScene scene = makeWideSlab(thickness, albedo);
   scene.width = scene.height = 128;
   aimCamera(scene, downwardDirection(0.95, 1.0));
   Rgb expected = Rgb::Zero();

@@ -22,9 +22,10 @@ inline TestScene makeSlab(double side, double thickness, const Rgb& albedo, doub
   return scene;
 }
 
-/// Slab that is infinitely wide in double precision: the loss through the sides, 10000 free paths
-/// away, decays like exp(-r / (one or two free paths)) in a slab a few free paths thick.
-inline TestScene makeInfiniteSlab(double thickness, const Rgb& albedo) {
+/// Slab that is wide enough to count as infinite in double precision: the loss through the sides,
+/// 10000 free paths away, decays like exp(-r / (one or two free paths)) in a slab a few free paths
+/// thick.
+inline TestScene makeWideSlab(double thickness, const Rgb& albedo) {
   TestScene scene = makeSlab(20000.0, thickness, albedo);
   scene.pose.scale = 1.0;
   return scene;

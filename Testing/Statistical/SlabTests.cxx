@@ -54,7 +54,7 @@ TEST(RatioTracking, TransmittanceOfSlabIsExponential) {
   }
 }
 
-/// Chandrasekhar's H for isotropic scattering, by iteration of his integral equation
+/// Chandrasekhar's H for isotropic scattering of albedo w, by iteration of his integral equation
 /// 1/H(mu) = sqrt(1 - w) + w/2 ∫ mu' H(mu') / (mu + mu') dmu' (Radiative Transfer, 1960, ch. V).
 class ChandrasekharH {
 public:
@@ -122,7 +122,7 @@ TEST(HalfSpace, EnvironmentReflectanceEqualsClosedFormAtAnyAngle) {
   std::uint64_t seed = 20;
   for (const double mu : {0.7, 0.2}) {
     SCOPED_TRACE(mu);
-    TestScene scene = makeInfiniteSlab(halfSpaceDepth, halfSpaceAlbedo);
+    TestScene scene = makeWideSlab(halfSpaceDepth, halfSpaceAlbedo);
     aimCamera(scene, downwardDirection(mu));
     Rgb expected;
     for (int c = 0; c < 3; ++c)
@@ -139,7 +139,7 @@ TEST(HalfSpace, ParallelLightFollowsLawOfDiffuseReflection) {
   for (const double mu0 : {1.0, 0.4})
     for (const double mu : {0.9, 0.25}) {
       SCOPED_TRACE(std::to_string(mu0) + " " + std::to_string(mu));
-      TestScene scene = makeInfiniteSlab(halfSpaceDepth, halfSpaceAlbedo);
+      TestScene scene = makeWideSlab(halfSpaceDepth, halfSpaceAlbedo);
       scene.lights = {DirectionalLight{.direction = downwardDirection(mu0, 2.0),
                                        .irradiance = Rgb::Constant(pi)}};
       aimCamera(scene, downwardDirection(mu));

@@ -70,8 +70,9 @@ TEST_P(EstimatedErrors, EqualSpreadOverSeeds) {
                 measured.error);
     EXPECT_LT(measured.error, 0.05);
     EXPECT_GT(measured.ratio, 1.0 - 4.5 * measured.error);
-    const bool isEven = mode.sampling == Sampling::independent || samples != 17;
-    EXPECT_LT(measured.ratio, (isEven ? 1.0 : 1.06) + 4.5 * measured.error);
+    // 17 samples: two complete blocks and one sample, which may bias the estimate upward.
+    const bool isBiased = mode.sampling == Sampling::stratified && samples == 17;
+    EXPECT_LT(measured.ratio, (isBiased ? 1.06 : 1.0) + 4.5 * measured.error);
   }
 }
 
@@ -79,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Samples, EstimatedErrors, ::testing::Values(2, 8, 16, 1
 
 TEST(StratifiedSampling, ReducesNoise) {
   const TestScene scene = makeFogScene();
-  for (const std::size_t first : {0U, 2U}) {
+  for (const std::size_t first : {0U, 2U}) { // `modes`: stratified, then independent
     const int seeds = scaleSamples(240);
     const double stratified =
         measureErrorRatio(scene, makeSettings(modes[first], 16, 9000), seeds).variance;

@@ -135,7 +135,7 @@ TEST(SampleIndices, IndicesBeyond32BitsGiveNewSamples) {
   constexpr std::uint64_t count = 20000;
   constexpr std::uint64_t far = (std::uint64_t{1} << 32) * 3;
   PixelSums near, beyond;
-  double product = 0.0;
+  double covariance = 0.0; // times count
   const auto a = traceSamples(scene, 0, 0, 0, count);
   const auto b = traceSamples(scene, 0, 0, far, count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -143,10 +143,10 @@ TEST(SampleIndices, IndicesBeyond32BitsGiveNewSamples) {
     beyond.add(b[i]);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    product += (a[i].radiance[1] - near.mean[1]) * (b[i].radiance[1] - beyond.mean[1]);
+    covariance += (a[i].radiance[1] - near.mean[1]) * (b[i].radiance[1] - beyond.mean[1]);
   }
-  const double normal = std::sqrt(near.m2[1] * beyond.m2[1]);
-  EXPECT_LT(std::abs(product / normal), 4.0 / std::sqrt(static_cast<double>(count)));
+  const double normalization = std::sqrt(near.m2[1] * beyond.m2[1]);
+  EXPECT_LT(std::abs(covariance / normalization), 4.0 / std::sqrt(static_cast<double>(count)));
   const double error = std::hypot(near.standardError()[1], beyond.standardError()[1]);
   EXPECT_NEAR(near.mean[1], beyond.mean[1], 4.0 * error);
 }

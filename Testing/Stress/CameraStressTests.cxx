@@ -33,10 +33,11 @@ Ray makeCameraRay(const CameraPose& pose, int width, int height, double column, 
   return {pose.position, (forward + slope * offset).normalized()};
 }
 
-/// Expects each pixel to equal the mean of exp(-sigma chord) over its area: the sum of z^2 and the
-/// sum of the differences within 4 of their standard errors. Samples are 0 or 1, so the variance is
-/// known. The expected mean is computed from a raster of rays. It is finer in the long version,
-/// whose errors are as small as the raster's error at the box's silhouette.
+/// Expects each pixel to equal the mean of exp(-sigma chord) over its area: the sum of z^2 (Wilson
+/// and Hilferty 1931) and the sum of the differences within 4 of their standard errors. Samples are
+/// 0 or 1, so the variance is known. The expected mean is computed from a raster of rays. It is
+/// finer in the long version, whose errors are as small as the raster's error at the box's
+/// silhouette.
 void expectChords(const TestScene& scene, int samples) {
   const int subdivisions = isLongRun() ? 128 : 16;
   const RenderResult result = renderScene(scene, samples);

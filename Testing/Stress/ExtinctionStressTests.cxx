@@ -135,24 +135,21 @@ TransferFunction makeDeep(const Rgb& albedo) {
           ColorFunction({{0.0, albedo}})};
 }
 
-using ReflectanceCase = std::tuple<Profile, std::pair<double, double>>;
+using ReflectanceCase = std::tuple<Profile, std::pair<double, double>>; ///< albedo, reflectance
 class HalfSpaceProfile : public ::testing::TestWithParam<ReflectanceCase> {};
 
 TEST_P(HalfSpaceProfile, ReflectanceEqualsChandrasekharsValue) {
-  const auto& [profile, reflectance] = GetParam();
+  const auto& [profile, pair] = GetParam();
+  const auto [albedo, reflectance] = pair;
   TestScene scene{makeLayers(depthVoxels, 0.0005, 0.4), // 0.0165 mm deep: no loss at the sides
-                  profile.transfer(Rgb::Constant(reflectance.first)),
-                  {EnvironmentLight{}},
-                  {},
-                  8,
-                  8};
+                  profile.transfer(Rgb::Constant(albedo)), {EnvironmentLight{}}, {}, 8, 8};
   scene.pose.position = {0.0, 0.0, -1.0}; // the thin end faces the camera
   scene.pose.target = Vec3::Zero();
   scene.pose.up = Vec3::UnitY();
   scene.pose.scale = 0.001;
   const RenderResult result = renderScene(scene, scaleSamples(250));
   const Estimate estimate = estimateMean(result.film);
-  EXPECT_NEAR(estimate.mean, reflectance.second, 4.0 * estimate.error + 5e-5); // four known digits
+  EXPECT_NEAR(estimate.mean, reflectance, 4.0 * estimate.error + 5e-5); // four known digits
   EXPECT_LT(estimate.error, relaxError(0.005));
   RecordProperty("lookupsPerPath", std::to_string(result.counters.lookups / result.counters.paths));
 }

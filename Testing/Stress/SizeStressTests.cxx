@@ -25,10 +25,11 @@ double evaluateField(const Volume& volume, const Vec3& index) {
       at[static_cast<std::size_t>(axis)] = static_cast<std::uint64_t>(
           std::min(low + (up ? 1.0 : 0.0), static_cast<double>(size[axis] - 1)));
     }
-    const auto rows = static_cast<std::uint64_t>(size.x());
-    const auto slices = static_cast<std::uint64_t>(size.y());
+    const auto rowLength = static_cast<std::uint64_t>(size.x());
+    const auto rowsPerSlice = static_cast<std::uint64_t>(size.y());
     if (weight > 0.0)
-      sum += weight * static_cast<double>(voxels[at[0] + rows * (at[1] + slices * at[2])]);
+      sum +=
+          weight * static_cast<double>(voxels[at[0] + rowLength * (at[1] + rowsPerSlice * at[2])]);
   }
   return sum;
 }
@@ -222,6 +223,7 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreVisible) {
   const MinMaxGrid ranges(volume, 0);
   EXPECT_EQ(ranges.high(0), 100.0);
   EXPECT_EQ(ranges.high(ranges.size() - 1), 200.0);
+  // Cells larger than the block also contain 0.
   EXPECT_EQ(ranges.low(ranges.size() - 1), 200.0 * (ranges.cellSize().x() < 16 ? 1 : 0));
   EXPECT_EQ(ranges.high(ranges.size() / 2), 0.0);
 

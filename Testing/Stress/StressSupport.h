@@ -40,7 +40,7 @@ inline Random makeRandomWithDraw(int draw, std::uint64_t bits) {
 /// Numbers of a path, the `draw`-th of which is `bits`, counted in the order of PrimarySamples from
 /// `depth`.
 inline PrimarySamples makeSamplesWithDraw(int draw, std::uint64_t bits) {
-  constexpr int given = 4;
+  constexpr int given = 4; // stored by PrimarySamples; `rest` generates all others
   Random random = makeRandomWithDraw(draw, bits);
   const std::uint64_t depth = random.bits();
   const std::uint64_t acceptance = random.bits();

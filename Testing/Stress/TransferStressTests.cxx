@@ -62,7 +62,7 @@ struct TransferCase {
   Knots knots; ///< sorted by position
 };
 
-const double next = std::nextafter(50.0, 51.0);
+const double justAbove50 = std::nextafter(50.0, 51.0);
 
 std::vector<TransferCase> makeTransferCases() {
   return {
@@ -78,7 +78,7 @@ std::vector<TransferCase> makeTransferCases() {
       {"stepAtMinimum", {makeKnot(lowest, 0.8), makeKnot(lowest, 0.1)}},
       {"stepAtMaximum", {makeKnot(highest, 0.1), makeKnot(highest, 0.4)}},
       {"stepAtVoxel", {makeKnot(100, 0.0), makeKnot(100, 0.2)}},
-      {"oneUlpWide", {makeKnot(50, 0.05), makeKnot(next, 0.3)}},
+      {"oneUlpWide", {makeKnot(50, 0.05), makeKnot(justAbove50, 0.3)}},
       {"minimumSpan", {makeKnot(0, 0.05), makeKnot(5e-324, 0.3)}},
       {"subnormalSpan", {makeKnot(0, 0.05), makeKnot(1e-310, 0.2), makeKnot(2e-310, 0.3)}},
       {"below", {makeKnot(-5000, 0), makeKnot(-4000, 0.2)}},

@@ -76,12 +76,15 @@ TEST(CheckpointFile, ShardsContainOnlyTheirTiles) {
   EXPECT_LT(bytes, readBytes(folder / "a.film").size() + 4000);
 }
 
+/// Upper bound of a header's size in these files: damage is denser there than in the pixels.
+constexpr std::size_t headerBytes = 700;
+
 TEST(CheckpointFile, AnyDamagedByteIsRejected) {
   const TemporaryFolder folder;
   const std::string content = encodeCheckpoint(renderResult(8, 8, -1.0), {}, testMetadata);
   ASSERT_NO_THROW(readCheckpoint(folder.write("a.film", content)));
   std::mt19937 random(1);
-  for (std::size_t at = 0; at < content.size(); at += 1 + random() % (at < 700 ? 5 : 90)) {
+  for (std::size_t at = 0; at < content.size(); at += 1 + random() % (at < headerBytes ? 5 : 90)) {
     std::string damaged = content;
     damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
     const auto path = folder.write("a.film", damaged);
@@ -92,7 +95,7 @@ TEST(CheckpointFile, AnyDamagedByteIsRejected) {
 TEST(CheckpointFile, TruncatedOrLongerFileIsRejected) {
   const TemporaryFolder folder;
   const std::string content = encodeCheckpoint(renderResult(8, 8, -1.0), {}, testMetadata);
-  for (std::size_t size = 0; size < content.size(); size += size < 700 ? 23 : 1009) {
+  for (std::size_t size = 0; size < content.size(); size += size < headerBytes ? 23 : 1009) {
     const auto path = folder.write("a.film", content.substr(0, size));
     expectRefused(path, "checkpoint", [&] { readCheckpoint(path); });
   }

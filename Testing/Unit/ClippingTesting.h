@@ -66,7 +66,8 @@ inline Camera makeAnteriorCamera(Projection projection, double distance, double 
   return {pose, width, height};
 }
 
-/// Focus region drawn with '#': 1 mm per sample, depth = column + 10 row.
+/// Focus region drawn with '#': 1 mm per sample, depth = column + 10 row, mm. The buffer has
+/// exactly the drawn samples.
 inline FocusDepth makeFocusDepth(const std::vector<std::string>& rows) {
   const auto width = static_cast<int>(rows[0].size());
   const auto height = static_cast<int>(rows.size());

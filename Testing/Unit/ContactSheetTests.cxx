@@ -67,6 +67,7 @@ TEST(ContactSheet, ShowsImagesInOrderAndReportsMissingOnes) {
     return red[static_cast<std::size_t>(y) * static_cast<std::size_t>(sheet.width) +
                static_cast<std::size_t>(x)];
   };
+  // Boxes of 336 x 336 pixels, 20 pixels apart; the first row begins at y = 89.
   ASSERT_EQ(sheet.width, 20 + 3 * 356);
   const int middle = 89 + 336 / 2;
   EXPECT_NEAR(at(20 + 168, middle), 0.25F, 0.01F);

@@ -16,8 +16,9 @@ namespace {
 double computeLength(const DepthBuffer& buffer, const Contour& contour) {
   double sum = 0.0;
   for (std::size_t i = 0; i < contour.size(); ++i)
-    sum +=
-        (position(buffer, contour[(i + 1) % contour.size()]) - position(buffer, contour[i])).norm();
+    sum += (computeMidpoint(buffer, contour[(i + 1) % contour.size()]) -
+            computeMidpoint(buffer, contour[i]))
+               .norm();
   return sum;
 }
 
@@ -117,7 +118,8 @@ TEST(Contour, EveryCrossingLiesOnExactlyOneLoop) {
         EXPECT_TRUE(focus.isFocus(c.column, c.row));
         EXPECT_TRUE(visited.insert({c.column, c.row, c.side}).second);
         const Crossing& next = contour[(i + 1) % contour.size()];
-        EXPECT_LT((position(focus.depth, next) - position(focus.depth, c)).norm(), 1.0 + 1e-12);
+        EXPECT_LT((computeMidpoint(focus.depth, next) - computeMidpoint(focus.depth, c)).norm(),
+                  1.0 + 1e-12);
       }
     std::size_t expected = 0;
     for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
@@ -132,7 +134,8 @@ TEST(Contour, EveryCrossingLiesOnExactlyOneLoop) {
   }
 }
 
-/// Disk of radius 40 mm with a hole of radius 15 mm, and a small disk beside it.
+/// Disk around sample (50, 50) of radius 40 mm, with a hole of radius 15 mm, and a disk around
+/// (115, 50) of radius 10 mm. Samples are 1 mm apart.
 FocusDepth makeDisks() {
   std::vector<std::string> rows(100, std::string(140, '.'));
   for (std::size_t y = 0; y < rows.size(); ++y)
@@ -146,6 +149,12 @@ FocusDepth makeDisks() {
   return makeFocusDepth(rows);
 }
 
+/// Column and row of a control point of makeDisks(): the center of its 140 x 100 samples is at the
+/// origin, and y is up.
+Vec2 toSample(const ControlPoint& point) {
+  return {point.site.x() + 69.5, 49.5 - point.site.y()};
+}
+
 TEST(ControlPoints, AreDistributedOverLoopsInProportionToLength) {
   const FocusDepth focus = makeDisks();
   const auto contours = traceContours(focus);
@@ -154,11 +163,11 @@ TEST(ControlPoints, AreDistributedOverLoopsInProportionToLength) {
   EXPECT_EQ(points.size(), 65U);
   std::array<int, 3> counts{};
   for (const ControlPoint& point : points) {
-    const Vec2 pixel(point.site.x() + 69.5, 49.5 - point.site.y());
-    const double fromBig = (pixel - Vec2(50, 50)).norm();
-    ++counts[pixel.x() > 100 ? 2U : fromBig > 27 ? 0U : 1U];
+    const Vec2 sample = toSample(point);
+    const double fromBig = (sample - Vec2(50, 50)).norm();
+    ++counts[sample.x() > 100 ? 2U : fromBig > 27 ? 0U : 1U]; // small disk, outline, hole
   }
-  EXPECT_NEAR(counts[0], 40, 1); // radii 40 : 15 : 10
+  EXPECT_NEAR(counts[0], 40, 1); // lengths are in proportion to the radii, 40 : 15 : 10
   EXPECT_NEAR(counts[1], 15, 1);
   EXPECT_NEAR(counts[2], 10, 1);
 }
@@ -173,14 +182,14 @@ TEST(ControlPoints, AreUniformInArcLength) {
   const auto points = placeControlPoints(focus, traceContours(focus), 50);
   ASSERT_EQ(points.size(), 50U);
   std::vector<double> angles;
-  for (const ControlPoint& point : points)
+  for (const ControlPoint& point : points) // the disk's center is at (0.5, -0.5) mm
     angles.push_back(std::atan2(point.site.y() + 0.5, point.site.x() - 0.5));
   std::ranges::sort(angles);
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const double gap =
         i + 1 < angles.size() ? angles[i + 1] - angles[i] : angles[0] + 2 * pi - angles[i];
-    // The spacing is 5 mm. Sites are within one sample of their ideal position, and a staircase is
-    // up to 8 % longer between the axes and the diagonals.
+    // Ideal: 5 mm. Sites are within one sample of their ideal position, and the contour, a
+    // staircase, is up to 8 % longer than the circle between the axes and the diagonals.
     EXPECT_NEAR(gap * 40.0, 2 * pi * 40.0 / 50.0, 1.9);
   }
 }
@@ -193,7 +202,8 @@ TEST(ControlPoints, HaveTheDepthOfTheirSampleAndUniqueSites) {
   std::set<std::pair<double, double>> sites;
   for (const ControlPoint& point : points) {
     EXPECT_TRUE(sites.insert({point.site.x(), point.site.y()}).second);
-    EXPECT_NEAR(point.depth, point.site.x() + 69.5 + 10.0 * (49.5 - point.site.y()), 1e-4);
+    const Vec2 sample = toSample(point);
+    EXPECT_NEAR(point.depth, sample.x() + 10.0 * sample.y(), 1e-4); // as in makeFocusDepth()
   }
   EXPECT_LE(points.size(), findBoundarySamples(focus, contours).size());
 }

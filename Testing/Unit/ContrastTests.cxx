@@ -111,6 +111,7 @@ TEST(Contrast, DesaturatesSurroundingsThatLookLikeTheFocus) {
   const FocusContrast same = chooseSaturation({}, makeBallMask(), volume, makeTransfer(red, red));
   EXPECT_EQ(same.saturation, graySaturation);
   ASSERT_TRUE(same.contrast);
+  // deltaE[0]: normal vision, deltaE[1]: red-blind (ColorVision).
   EXPECT_GT(same.contrast->deltaE[0], 20.0);
   EXPECT_LT(same.contrast->deltaE[1], same.contrast->deltaE[0]);
   const FocusContrast other =

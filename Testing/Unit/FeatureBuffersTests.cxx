@@ -154,6 +154,7 @@ TEST(FeatureBuffers, NormalsOfAHomogeneousMediumFollowTheSoftClipEdge) {
     s.transfer.shading = SurfaceShading{};
     s.clip = makeTiltedClip(s);
     const double opacity = 1.0 - std::exp(-6.0);
+    // Surface probability (Kroes, Post, Botha 2012) at gamma 0.5 and softness 3 mm.
     const double probability = opacity * (1.0 - std::exp(-25.0 * 0.125 * cutShading / 3.0));
     const std::size_t middle = static_cast<std::size_t>(s.width * s.height / 2 + s.width / 2);
     const Vec3 normal = -cutGradient(s.clip, Vec3(1.0, 0.0, 0.0)).normalized();
@@ -178,7 +179,7 @@ TEST(FeatureBuffers, AreTheMeanOfTheSamples) {
   settings.path.bounces = 1;
   const Film film = s.render(settings).film;
   const FeatureBuffers features = renderFeatures(s);
-  std::array<Plane, 7> means;
+  std::array<Plane, 7> means; // albedo, normal, depth
   for (const PixelSums& pixel : film.pixels()) {
     const auto n = static_cast<double>(pixel.samples);
     means[6].push_back(static_cast<float>(pixel.depth / n));

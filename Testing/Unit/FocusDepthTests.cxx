@@ -169,6 +169,7 @@ TEST(CellCubic, FirstRootEqualsBruteForce) {
   for (int trial = 0; trial < 20000; ++trial) {
     Cubic cubic{{uniform(random, -1, 0.05), uniform(random, -4, 4), uniform(random, -8, 8),
                  uniform(random, -8, 8)}};
+    // Every fifth is a quadratic; of these, every second is nearly linear.
     cubic.c[trial % 5 == 0 ? 3 : 0] *= trial % 5 == 0 ? 0.0 : 1.0;
     cubic.c[trial % 10 == 0 ? 2 : 0] *= trial % 10 == 0 ? 1e-18 : 1.0;
     const double root = findFirstNonNegative(cubic);
@@ -273,7 +274,7 @@ TEST(FocusDepth, IsTheSameInEveryInstructionSet) {
         if (focus.regions[static_cast<std::size_t>(i)] == Region::focus) {
           ASSERT_NEAR(focus.depth.at(i), first->depth.at(i), 1e-5); // a float's last place
         }
-      hwy::SetSupportedTargetsForTest(0);
+      hwy::SetSupportedTargetsForTest(0); // all again
     }
   }
 }

@@ -31,7 +31,7 @@ void forEachRow(Check&& check) {
       check(row, sums);
       EXPECT_EQ(sums.back(), untouched) << length;
     }
-    hwy::SetSupportedTargetsForTest(0);
+    hwy::SetSupportedTargetsForTest(0); // all again
   }
 }
 

@@ -128,7 +128,7 @@ TEST(MajorantGrid, BoundsGradientOpacity) {
 }
 
 /// Fraction of cells with majorant 0.
-double emptyFraction(const MajorantGrid& grid) {
+double computeEmptyFraction(const MajorantGrid& grid) {
   std::int64_t empty = 0;
   for (std::int64_t i = 0; i < grid.cellCount().prod(); ++i)
     empty += grid.cell(i).majorant == 0.0F;
@@ -148,14 +148,14 @@ TEST(MajorantGrid, ClippedCellsAreEmptyAndCutCellsAreMarked) {
   const Clip plane = ClipPlane{Camera(pose, 8, 8), Vec3(0, 0, 15.9), Vec3::UnitZ()};
   const MajorantGrid clipped(grid, ranges, opaque, plane);
   const double layer = 1.0 / static_cast<double>(clipped.cellCount().z());
-  EXPECT_NEAR(emptyFraction(clipped), 0.5, layer);
+  EXPECT_NEAR(computeEmptyFraction(clipped), 0.5, layer);
   std::int64_t cut = 0;
   for (std::int64_t i = 0; i < clipped.cellCount().prod(); ++i)
     cut += clipped.cell(i).isCut;
   EXPECT_EQ(cut, clipped.cellCount().x() * clipped.cellCount().y());
 
   const TransferFunction empty{ScalarFunction({knot(1.5, 0), knot(2, 2)}), gray};
-  EXPECT_EQ(emptyFraction(MajorantGrid(grid, ranges, empty, ClipNone{})), 1.0);
+  EXPECT_EQ(computeEmptyFraction(MajorantGrid(grid, ranges, empty, ClipNone{})), 1.0);
 }
 
 TEST(MajorantGrid, BoundsClipAndContextStyleWithinMarginOfCells) {
@@ -170,7 +170,7 @@ TEST(MajorantGrid, BoundsClipAndContextStyleWithinMarginOfCells) {
       ClipPlane{Camera(pose, 8, 8), Vec3(12.2, 11.7, 12.1), Vec3(0.3, -0.5, 1.0).normalized()};
   const auto focus = std::make_shared<Mask>(
       Mask{.grid = grid, .voxels = std::vector<std::uint8_t>(13824, 0), .names = {}});
-  for (std::size_t i = 0; i < 24 * 24 * 11 + 24 * 9; ++i)
+  for (std::size_t i = 0; i < 24 * 24 * 11 + 24 * 9; ++i) // 11 slices and 9 rows
     focus->voxels[i] = 1;
   const ContextStyle style{.focus = focus, .extinction = 0.25};
   const MajorantGrid majorants(grid, MinMaxGrid(volume, 0), opaque, plane, &style);

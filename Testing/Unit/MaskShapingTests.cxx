@@ -24,7 +24,7 @@ double computeVolume(const Mask& mask) {
   return static_cast<double>(mask.count) * mask.grid.spacing().prod();
 }
 
-double ballVolume(double radius) {
+double computeBallVolume(double radius) {
   return 4.0 / 3.0 * pi * radius * radius * radius;
 }
 
@@ -32,16 +32,16 @@ TEST(MaskShaping, BallGrowsByItsMargin) {
   for (const double margin : {1.5, 4.0, 9.0}) {
     const Mask grownBall = applyMargin(makeBall(10.0), margin, volume);
     // Distances are between voxel centers, so the radius is uncertain by half a voxel.
-    EXPECT_GT(computeVolume(grownBall), ballVolume(10.0 + margin - 0.7));
-    EXPECT_LT(computeVolume(grownBall), ballVolume(10.0 + margin + 0.5));
+    EXPECT_GT(computeVolume(grownBall), computeBallVolume(10.0 + margin - 0.7));
+    EXPECT_LT(computeVolume(grownBall), computeBallVolume(10.0 + margin + 0.5));
     EXPECT_LT(grownBall.grid.worldCenter().norm(), 1e-9);
   }
 }
 
 TEST(MaskShaping, BallShrinksByItsMargin) {
   const Mask shrunk = applyMargin(makeBall(10.0), -3.0, volume);
-  EXPECT_GT(computeVolume(shrunk), ballVolume(10.0 - 3.0 - 1.0));
-  EXPECT_LT(computeVolume(shrunk), ballVolume(10.0 - 3.0 + 0.7));
+  EXPECT_GT(computeVolume(shrunk), computeBallVolume(10.0 - 3.0 - 1.0));
+  EXPECT_LT(computeVolume(shrunk), computeBallVolume(10.0 - 3.0 + 0.7));
   EXPECT_EQ(applyMargin(makeBall(10.0), -30.0, volume).count, 0);
 }
 
@@ -74,7 +74,7 @@ TEST(MaskShaping, UnionCountsVoxelsOfBothMasks) {
 }
 
 /// Step height, mm: range of distances from the visible surface's center to a sphere of `radius`.
-double stepHeight(const Mask& mask, double radius) {
+double measureStepHeight(const Mask& mask, double radius) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 20, 128, 128);
   const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
   std::vector<double> distances;
@@ -93,11 +93,11 @@ TEST(MaskShaping, SmoothingRemovesStepsAndPreservesRadius) {
   const double radius = 12.0;
   const Mask steps = makeBall(radius), smooth = smoothMask(steps, 1.2, volume);
   EXPECT_EQ(smooth.maxValue, 255);
-  EXPECT_GT(stepHeight(steps, radius), 0.5);
-  EXPECT_LT(stepHeight(smooth, radius), 0.6 * stepHeight(steps, radius));
+  EXPECT_GT(measureStepHeight(steps, radius), 0.5);
+  EXPECT_LT(measureStepHeight(smooth, radius), 0.6 * measureStepHeight(steps, radius));
   // Smoothing shrinks a ball's radius by sigma^2 / radius.
-  EXPECT_NEAR(std::cbrt(computeVolume(smooth) / ballVolume(1.0)),
-              std::cbrt(computeVolume(steps) / ballVolume(1.0)) - 1.44 / radius, 0.12);
+  EXPECT_NEAR(std::cbrt(computeVolume(smooth) / computeBallVolume(1.0)),
+              std::cbrt(computeVolume(steps) / computeBallVolume(1.0)) - 1.44 / radius, 0.12);
 }
 
 TEST(MaskShaping, SmoothingPreservesFlatFaces) {
@@ -111,7 +111,7 @@ TEST(MaskShaping, SmoothingPreservesFlatFaces) {
 }
 
 /// Step height, mm: range of distances from the visible surface to the plane y = slope z.
-double slopeStepHeight(const Mask& mask, double slope) {
+double measureSlopeStepHeight(const Mask& mask, double slope) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 5, 128, 128);
   const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
   std::vector<double> distances;
@@ -131,8 +131,9 @@ TEST(MaskShaping, ObliqueSurfaceAcrossThickSlicesIsSmooth) {
   for (const double slope : {1.0, 2.0}) { // 2 and 4 mm per slice
     const Mask steps = makeMask(makeCenteredGrid({41, 121, 21}, {0.5, 0.5, 2.0}),
                                 [&](const Vec3& p) { return p.y() >= slope * p.z() + 0.1; });
-    EXPECT_GT(slopeStepHeight(smoothMask(steps, 0.6, volume), slope), 0.3);
-    EXPECT_LT(slopeStepHeight(smoothMask(interpolateSlices(steps), 0.6, volume), slope), 0.12);
+    EXPECT_GT(measureSlopeStepHeight(smoothMask(steps, 0.6, volume), slope), 0.3);
+    EXPECT_LT(measureSlopeStepHeight(smoothMask(interpolateSlices(steps), 0.6, volume), slope),
+              0.12);
   }
 }
 
@@ -221,7 +222,7 @@ TEST(MaskShaping, InterpolationPreservesSlicesAndVolumeOfBall) {
     fineSize[axis] = 55;
     ASSERT_EQ(fine.grid.size, fineSize);
     EXPECT_LT(fine.grid.worldCenter().norm(), 1e-9);
-    EXPECT_NEAR(computeVolume(fine) / ballVolume(radius), 1.0, 0.02);
+    EXPECT_NEAR(computeVolume(fine) / computeBallVolume(radius), 1.0, 0.02);
     std::int64_t differing = 0;
     for (std::int64_t i = 0; i < ball.grid.voxelCount(); ++i) {
       const Size3 at{i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y())};
@@ -253,7 +254,7 @@ TEST(MaskShaping, SingleMarginShrinksUnionOfSegments) {
   const auto count = [&](const MaskShaping& shaping) {
     return segmentation.makeFocusMask({"A", "B"}, grid, shaping).count;
   };
-  EXPECT_EQ(count({{-1.0}}), 18 * 8 * 8);
+  EXPECT_EQ(count({{-1.0}}), 18 * 8 * 8); // the margin of both
   EXPECT_EQ(count({{-1.0, -1.0}}), 2 * 8 * 8 * 8);
 }
 
@@ -269,12 +270,12 @@ TEST(MaskShaping, MarginsApplyPerSegment) {
     return segmentation.makeFocusMask({"A", "B"}, grid, shaping).count;
   };
   EXPECT_EQ(count({}), 2);
-  EXPECT_EQ(count({{1.0}}), 14);
-  EXPECT_EQ(count({{0.0, 1.0}}), 8);
-  EXPECT_EQ(count({{1.5, 1.0}}), 19 + 7);
+  EXPECT_EQ(count({{1.0}}), 2 * 7); // a voxel and its six neighbors, twice
+  EXPECT_EQ(count({{0.0, 1.0}}), 1 + 7);
+  EXPECT_EQ(count({{1.5, 1.0}}), 19 + 7); // also the twelve diagonal neighbors
   EXPECT_THROW(count({{1.0, 2.0, 3.0}}), Error);
   EXPECT_THROW(count({{-1.0}}), Error) << "the focus is empty";
-  EXPECT_THROW(count({{}, 5.0}), Error) << "the focus is empty";
+  EXPECT_THROW(count({{}, 5.0}), Error) << "smoothing leaves an empty focus";
 }
 
 } // namespace

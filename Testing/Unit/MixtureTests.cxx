@@ -36,7 +36,7 @@ TEST(Mixture, PartsAreWeightedExtinctions) {
   Mixture mixture = makeRampMixture();
   const MixtureField field(mixture, mixture.weights->grid());
   const MixturePoint point{Vec3(2.0, 0.5, 0.5), 0.5, 1.0};
-  const double weight = 64.0 / 255.0;
+  const double weight = 64.0 / 255.0; // 2 / 8 in 8 bits
   const std::map<int, double> parts = listParts(field, point);
   EXPECT_NEAR(parts.at(0), 0.5 * (1.0 - weight), 1e-12);
   EXPECT_NEAR(parts.at(1), 1.5 * weight, 1e-12);
@@ -103,8 +103,10 @@ TestScene makeMixtureScene(bool isHybrid) {
   return scene;
 }
 
+constexpr double filmSamples = 64.0; ///< samples per pixel of renderFilm
+
 /// Mean depth of the first collisions, mm.
-double meanDepth(const Film& film) {
+double computeMeanDepth(const Film& film) {
   double sum = 0.0, count = 0.0;
   for (const PixelSums& pixel : film.pixels()) {
     sum += pixel.depth;
@@ -119,9 +121,9 @@ TEST(Mixture, SimdMatchesScalarIntegrator) {
     scene.visitView([](const SceneView& all) { ASSERT_TRUE(canUseSimd(all)); });
     const Film simd = renderFilm(scene, Integrator::simd);
     const Film scalar = renderFilm(scene, Integrator::scalar);
-    const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / 64.0); };
+    const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / filmSamples); };
     EXPECT_LT(computeRmsDifference(simd, scalar, albedo), 0.04) << isHybrid;
-    EXPECT_NEAR(meanDepth(simd), meanDepth(scalar), 0.1) << isHybrid;
+    EXPECT_NEAR(computeMeanDepth(simd), computeMeanDepth(scalar), 0.1) << isHybrid;
     const Estimate a = estimateMean(simd), b = estimateMean(scalar);
     EXPECT_LT(std::abs(a.mean - b.mean), 4.0 * std::hypot(a.error, b.error)) << isHybrid;
   }
@@ -152,7 +154,7 @@ TEST(Mixture, ClipPreservesUnclippedComponents) {
     double sum = 0.0;
     for (const PixelSums& pixel : film.pixels())
       sum += static_cast<double>(pixel.collidedSamples);
-    return sum / 64.0;
+    return sum / filmSamples;
   };
   scene.clip = ClipPlane{camera, center - 100.0 * Vec3::UnitY(), Vec3(0.0, 1.0, 0.0)};
   for (const Integrator integrator : {Integrator::simd, Integrator::scalar})

@@ -73,9 +73,10 @@ struct NiftiFile {
       std::memcpy(&header[at], &value, sizeof value);
     };
     put(0, std::int32_t{348});
-    put(40, std::array<std::int16_t, 8>{3, size[0], size[1], size[2], 1, 1, 1, 1});
-    put(70, std::int16_t{4});
-    put(72, std::int16_t{16});
+    put(40, std::array<std::int16_t, 8>{3, size[0], size[1], size[2], 1, 1, 1,
+                                        1}); // number of axes, sizes
+    put(70, std::int16_t{4});                // int16
+    put(72, std::int16_t{16});               // bits
     put(76, pixdim);
     // Extension: size (a multiple of 16 that includes these 8 bytes), code and content.
     std::string block;
@@ -85,8 +86,8 @@ struct NiftiFile {
       const auto blockSize = static_cast<std::int32_t>(block.size());
       std::memcpy(block.data(), &blockSize, sizeof blockSize);
     }
-    put(108, static_cast<float>(352 + block.size()));
-    put(112, 1.0f);
+    put(108, static_cast<float>(352 + block.size())); // offset of the samples
+    put(112, 1.0f);                                   // slope
     header[123] = units;
     put(252, qformCode);
     put(254, sformCode);

@@ -13,8 +13,8 @@ namespace {
 
 using Strings = std::vector<std::string>;
 
-SegmentInfo segment(const std::string& name, const std::string& type = "",
-                    const std::string& region = "") {
+SegmentInfo makeSegment(const std::string& name, const std::string& type = "",
+                        const std::string& region = "") {
   SegmentInfo info;
   info.id = info.name = name;
   info.type = type;
@@ -22,10 +22,10 @@ SegmentInfo segment(const std::string& name, const std::string& type = "",
   return info;
 }
 
-std::vector<SegmentInfo> segments(const Strings& names) {
+std::vector<SegmentInfo> makeSegments(const Strings& names) {
   std::vector<SegmentInfo> infos;
   for (const std::string& name : names)
-    infos.push_back(segment(name));
+    infos.push_back(makeSegment(name));
   return infos;
 }
 
@@ -36,34 +36,34 @@ Strings listNames(const std::vector<SegmentInfo>& infos) {
   return names;
 }
 
-OrganPreset preset(const std::string& name, Modality modality, const SegmentPatterns& focus,
-                   const Strings& before = {}) {
+OrganPreset makePreset(const std::string& name, Modality modality, const SegmentPatterns& focus,
+                       const Strings& before = {}) {
   return {.name = name, .title = name, .modality = modality, .focus = focus, .before = before};
 }
 
 TEST(OrganPresets, FocusMatchesSegmentsByNameOrCode) {
   const SegmentPatterns patterns{
       {"lung*"}, {"nodule"}, {"SCT^39607008", "SCT^4147007~SCT^39607008"}};
-  const std::vector<SegmentInfo> all = {segment("heart", "SCT^80891009"),
-                                        segment("left lung"),
-                                        segment("Segment_6", "SCT^39607008"),
-                                        segment("lung nodule"),
-                                        segment("A", "SCT^4147007", "SCT^39607008"),
-                                        segment("B", "SCT^4147007", "SCT^12738006"),
-                                        segment("C", "SCT^396070081"),
-                                        segment("D", "SCT^4147007")};
+  const std::vector<SegmentInfo> all = {makeSegment("heart", "SCT^80891009"),
+                                        makeSegment("left lung"),
+                                        makeSegment("Segment_6", "SCT^39607008"),
+                                        makeSegment("lung nodule"),
+                                        makeSegment("A", "SCT^4147007", "SCT^39607008"),
+                                        makeSegment("B", "SCT^4147007", "SCT^12738006"),
+                                        makeSegment("C", "SCT^396070081"),
+                                        makeSegment("D", "SCT^4147007")};
   EXPECT_EQ(listNames(findFocusSegments(patterns, all)), (Strings{"left lung", "Segment_6", "A"}));
 }
 
 TEST(OrganPresets, PresetMatchesSegmentsAndModality) {
   const std::vector<OrganPreset> presets = {
-      preset("liver", Modality::ct, {{"liver"}}),
-      preset("brain", Modality::mr, {{"brain"}}),
-      preset("tumor", Modality::mr, {{"tumo*r"}}, {"brain"}),
-      preset("head-ct", Modality::ct, {{"brain"}}),
+      makePreset("liver", Modality::ct, {{"liver"}}),
+      makePreset("brain", Modality::mr, {{"brain"}}),
+      makePreset("tumor", Modality::mr, {{"tumo*r"}}, {"brain"}),
+      makePreset("head-ct", Modality::ct, {{"brain"}}),
   };
   const auto match = [&](const Strings& names, Modality known) {
-    return findMatchingPreset(presets, segments(names), "s.seg.nrrd",
+    return findMatchingPreset(presets, makeSegments(names), "s.seg.nrrd",
                               [known](Modality modality) { return modality == known; })
         .name;
   };
@@ -79,10 +79,10 @@ TEST(OrganPresets, PresetMatchesSegmentsAndModality) {
 }
 
 TEST(OrganPresets, SeveralMatchingPresetsAreListed) {
-  const std::vector<OrganPreset> presets = {preset("liver", Modality::ct, {{"liver"}}),
-                                            preset("heart", Modality::ct, {{"heart"}})};
+  const std::vector<OrganPreset> presets = {makePreset("liver", Modality::ct, {{"liver"}}),
+                                            makePreset("heart", Modality::ct, {{"heart"}})};
   expectRefused("s", "several presets match, liver (liver), heart (heart)", [&] {
-    findMatchingPreset(presets, segments({"liver", "heart"}), "s", [](Modality) -> bool {
+    findMatchingPreset(presets, makeSegments({"liver", "heart"}), "s", [](Modality) -> bool {
       throw std::logic_error("the modality must not matter");
     });
   });
@@ -113,21 +113,21 @@ TEST(OrganPresets, BuiltInPresetsMatchCommonNames) {
   };
   for (const auto& [name, organs] : expected)
     for (const std::string& organ : organs)
-      EXPECT_EQ(listPresets(segment(organ)), Strings{name}) << organ;
+      EXPECT_EQ(listPresets(makeSegment(organ)), Strings{name}) << organ;
   for (const char* none :
        {"spinal_cord", "brainstem", "liver_vessels", "lung_nodule", "rib_left_7", "skin",
         "costal_cartilages", "phalanges_hand", "portal_vein_and_splenic_vein", "iliac_vena_left",
         "hip_left", "lateral ventricle", "carotid_artery"})
-    EXPECT_EQ(listPresets(segment(none)), Strings{}) << none;
+    EXPECT_EQ(listPresets(makeSegment(none)), Strings{}) << none;
 }
 
 /// A segment's code is sufficient without a name.
 TEST(OrganPresets, BuiltInPresetsMatchSlicerCodes) {
-  EXPECT_EQ(listPresets(segment("S", "SCT^10200004")), Strings{"liver"});
-  EXPECT_EQ(listPresets(segment("S", "SCT^39607008", "SCT^1")), Strings{"lungs"});
-  EXPECT_EQ(listPresets(segment("S", "SCT^122496007")), Strings{"spine"});
-  EXPECT_EQ(listPresets(segment("S", "SCT^4147007", "SCT^12738006")), Strings{"brain-tumor"});
-  EXPECT_EQ(listPresets(segment("S", "SCT^4147007", "SCT^10200004")), Strings{});
+  EXPECT_EQ(listPresets(makeSegment("S", "SCT^10200004")), Strings{"liver"});
+  EXPECT_EQ(listPresets(makeSegment("S", "SCT^39607008", "SCT^1")), Strings{"lungs"});
+  EXPECT_EQ(listPresets(makeSegment("S", "SCT^122496007")), Strings{"spine"});
+  EXPECT_EQ(listPresets(makeSegment("S", "SCT^4147007", "SCT^12738006")), Strings{"brain-tumor"});
+  EXPECT_EQ(listPresets(makeSegment("S", "SCT^4147007", "SCT^10200004")), Strings{});
 }
 
 TEST(OrganPresets, ScalarRangeDistinguishesCt) {

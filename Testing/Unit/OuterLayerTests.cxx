@@ -12,6 +12,7 @@ using namespace testing_clipping;
 namespace {
 
 constexpr double radius = 30.0, depth = 2.5; // mm
+constexpr double airBelow = -300.0;          // HU
 
 /// CT volume: water where isWater(world) is true, else air.
 template <typename IsWater>
@@ -41,7 +42,7 @@ std::vector<Grid> makeGrids() {
 TEST(OuterLayer, HasRequestedDepth) {
   for (const Grid& grid : makeGrids()) {
     const Mask skin = findOuterLayer(makeCt(grid, [](const Vec3& p) { return p.norm() < radius; }),
-                                     -300.0, depth);
+                                     airBelow, depth);
     ASSERT_GT(skin.count, 0);
     for (const Vec3& direction :
          {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0.6, 0.64, 0.48), Vec3(0, 0, 1)}) {
@@ -62,7 +63,7 @@ TEST(OuterLayer, LiesAtSurroundingAir) {
       const bool isInFold = p.x() < -10.0 && std::abs(p.y()) < 3.0;
       return std::hypot(p.x(), p.y()) < radius && !isInLung && !isInFold;
     };
-    const Mask skin = findOuterLayer(makeCt(grid, isWater), -300.0, depth);
+    const Mask skin = findOuterLayer(makeCt(grid, isWater), airBelow, depth);
     EXPECT_EQ(evalMask(skin, Vec3(10, 0, 0)), 0.0);
     EXPECT_EQ(evalMask(skin, Vec3(10, 0, 39)), 0.0);
     EXPECT_EQ(evalMask(skin, Vec3(-15, 0, 0)), 1.0);
@@ -72,11 +73,12 @@ TEST(OuterLayer, LiesAtSurroundingAir) {
 
 TEST(OuterLayer, IsEmptyWithoutAirOrBody) {
   const Grid grid = makeGrids().front();
-  EXPECT_EQ(findOuterLayer(makeCt(grid, [](const Vec3&) { return true; }), -300.0, depth).count, 0);
-  EXPECT_EQ(findOuterLayer(makeCt(grid, [](const Vec3&) { return false; }), -300.0, depth).count,
+  EXPECT_EQ(findOuterLayer(makeCt(grid, [](const Vec3&) { return true; }), airBelow, depth).count,
+            0);
+  EXPECT_EQ(findOuterLayer(makeCt(grid, [](const Vec3&) { return false; }), airBelow, depth).count,
             0);
   const auto inside = [](const Vec3& p) { return p.norm() > 5.0; };
-  EXPECT_EQ(findOuterLayer(makeCt(grid, inside), -300.0, depth).count, 0) << "enclosed air";
+  EXPECT_EQ(findOuterLayer(makeCt(grid, inside), airBelow, depth).count, 0) << "enclosed air";
 }
 
 TEST(OuterLayer, AcceptsVoxelsOfAnySize) {
@@ -84,7 +86,7 @@ TEST(OuterLayer, AcceptsVoxelsOfAnySize) {
     for (const Size3& size : {Size3(1, 1, 1), Size3(9, 1, 4), Size3(9, 9, 9)}) {
       const Grid grid = makeCenteredGrid(size, Vec3(spacing, 1.0, spacing));
       const auto isWater = [&](const Vec3& p) { return p.x() > 0.0; };
-      const Mask skin = findOuterLayer(makeCt(grid, isWater), -300.0, depth);
+      const Mask skin = findOuterLayer(makeCt(grid, isWater), airBelow, depth);
       EXPECT_LE(skin.voxels.size(), 729U);
     }
 }
@@ -92,7 +94,7 @@ TEST(OuterLayer, AcceptsVoxelsOfAnySize) {
 TEST(OuterLayer, ResamplesOnLatticeOfLabels) {
   const Grid volume = makeGrids().front();
   const Mask skin = findOuterLayer(makeCt(volume, [](const Vec3& p) { return p.norm() < radius; }),
-                                   -300.0, depth);
+                                   airBelow, depth);
   const Mat3 rotation = Mat3::FromRows(Vec3(0.8, -0.6, 0), Vec3(0.6, 0.8, 0), Vec3(0, 0, 1.7));
   const Grid labels({7, 5, 3}, Affine(rotation, Vec3(3, 4, 5)));
   const Mask onLabels = resampleMask(skin, labels, volume);

@@ -44,7 +44,8 @@ protected:
     return static_cast<std::size_t>(
         std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
   }
-  fs::path read(const std::string& name, const std::string& content = "input") const {
+  /// Writes a file and opens it, which registers it as an input.
+  fs::path readInput(const std::string& name, const std::string& content = "input") const {
     requireFile(folder.write(name, content), "");
     return folder / name;
   }
@@ -99,7 +100,7 @@ TEST_F(OutputFiles, FailedCommitRestoresPreviousFiles) {
 }
 
 TEST_F(OutputFiles, InputIsNotReplacedUnderAnyOfItsNames) {
-  read("volume");
+  readInput("volume");
   fs::create_symlink("volume", folder / "link");
   fs::create_hard_link(folder / "volume", folder / "hard");
   fs::create_symlink(folder.path(), folder / "here");
@@ -114,7 +115,7 @@ TEST_F(OutputFiles, FileThatBecameAnInputIsNotReplaced) {
   folder.write("a", "old");
   outputs.add(folder / "a");
   outputs.checkInputs();
-  read("a", "old");
+  readInput("a", "old");
   catchError(ErrorKind::usage, [&] { outputs.checkInputs(); });
   outputs.write(folder / "a", "new");
   catchError(ErrorKind::usage, [&] { outputs.commit(); });
@@ -385,7 +386,7 @@ TEST(Inputs, FileAboveSizeLimitIsRefused) {
 /// The system ends a path at a zero byte. A folder's path with text after that byte would list the
 /// folder's entries, whose paths again resolve to the folder, without end.
 TEST_F(OutputFiles, ZeroByteInANameIsRefused) {
-  const fs::path file = read("a");
+  const fs::path file = readInput("a");
   const std::string zero(1, '\0');
   const fs::path inFolder = folder.path().native() + zero;
   registerInput(inFolder);

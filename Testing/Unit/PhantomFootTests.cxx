@@ -42,7 +42,7 @@ std::vector<std::size_t> findVoxels(const Phantom& phantom, const std::string& i
   return found;
 }
 
-Vec3 voxelPosition(const Grid& grid, std::size_t voxel) {
+Vec3 computeVoxelPosition(const Grid& grid, std::size_t voxel) {
   const auto at = static_cast<std::int64_t>(voxel);
   const Size3 index(at % grid.size.x(), at / grid.size.x() % grid.size.y(),
                     at / (grid.size.x() * grid.size.y()));
@@ -53,7 +53,7 @@ Vec3 computeCentroid(const Phantom& phantom, const std::string& id) {
   Vec3 sum = Vec3::Zero();
   const auto voxels = findVoxels(phantom, id);
   for (const std::size_t voxel : voxels)
-    sum += voxelPosition(phantom.volume.grid, voxel);
+    sum += computeVoxelPosition(phantom.volume.grid, voxel);
   return sum / static_cast<double>(voxels.size());
 }
 
@@ -177,7 +177,7 @@ TEST(PhantomFoot, BonesSegmentContainsVoxelsFrom200Hounsfield) {
     ASSERT_EQ(found, getVoxels(foot)[i] >= 200) << i;
     if (!found || foot.labels.layers[0][i] <= FootBones::count)
       continue;
-    const auto distances = skeleton.distances(voxelPosition(foot.volume.grid, i));
+    const auto distances = skeleton.distances(computeVoxelPosition(foot.volume.grid, i));
     EXPECT_LT(*std::min_element(distances.begin(), distances.end()), 1.6)
         << "a soft-tissue voxel without adjacent bone";
   }
@@ -197,8 +197,8 @@ TEST(PhantomFoot, TissuesHaveTypicalHounsfieldUnits) {
   EXPECT_GT(computeMedian(foot, "talus"), 300.0);
   const FootSubject layers;
   const FootSite shaft = layers.makeSite({-14.0, 168.0, 39.0});
-  EXPECT_LT(footMarrowSignal(shaft), 0.0) << "the canal of a metatarsal contains fat";
-  EXPECT_GT(footCortexSignal(shaft), 1200.0);
+  EXPECT_LT(footMarrowHu(shaft), 0.0) << "the canal of a metatarsal contains fat";
+  EXPECT_GT(footCortexHu(shaft), 1200.0);
   EXPECT_NEAR(getVoxels(foot).front(), -1000.0, 60.0) << "air";
 }
 

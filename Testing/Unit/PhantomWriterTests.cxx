@@ -48,7 +48,7 @@ std::string readField(const itk::NrrdImageIO& io, const std::string& key) {
 }
 
 /// Position of a voxel from the file header, converted from LPS to RAS.
-Vec3 voxelPosition(const itk::NrrdImageIO& io, const Vec3& index) {
+Vec3 computeVoxelPosition(const itk::NrrdImageIO& io, const Vec3& index) {
   Vec3 lps;
   for (unsigned axis = 0; axis < 3; ++axis)
     lps[axis] = io.GetOrigin(axis);
@@ -64,7 +64,7 @@ TEST_F(PhantomFiles, VoxelsAndPositionOfVolumeRoundTrip) {
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 index = Box{Vec3::Zero(), phantom.volume.grid.size.cast<double>()}.corner(corner);
     EXPECT_TRUE(
-        isApprox(voxelPosition(*io, index), phantom.volume.grid.indexToWorld * index, 1e-9));
+        isApprox(computeVoxelPosition(*io, index), phantom.volume.grid.indexToWorld * index, 1e-9));
   }
   EXPECT_TRUE(std::ranges::equal(read<std::int16_t>(*io),
                                  std::get<LargeArray<std::int16_t>>(phantom.volume.voxels)));
@@ -74,7 +74,7 @@ TEST_F(PhantomFiles, SegmentationHasSlicerFieldsForEverySegment) {
   const auto io = open("knee.seg.nrrd");
   const std::vector<std::uint8_t> labels = read<std::uint8_t>(*io);
   EXPECT_EQ(labels, phantom.labels.layers.at(0));
-  EXPECT_TRUE(isApprox(voxelPosition(*io, {1, 2, 3}),
+  EXPECT_TRUE(isApprox(computeVoxelPosition(*io, {1, 2, 3}),
                        phantom.volume.grid.indexToWorld * Vec3(1, 2, 3), 1e-9));
   EXPECT_EQ(readField(*io, "Segmentation_MasterRepresentation"), "Binary labelmap");
   for (std::size_t i = 0; i < phantom.segments.size(); ++i) {

@@ -11,7 +11,7 @@ namespace fenestra::testing::ReflectanceTests {
 namespace {
 
 /// Reflectance of an isotropically scattering half-space, to 5e-5: 1 - sqrt(1 - a) H(1) with
-/// Chandrasekhar's H.
+/// Chandrasekhar's function H and albedo a.
 TEST(Reflectance, MatchesChandrasekharForIsotropicScattering) {
   EXPECT_NEAR(toReflectance(0.5, 0.0), 0.1152, 0.01 * 0.1152);
   EXPECT_NEAR(toReflectance(0.9, 0.0), 0.4149, 0.01 * 0.4149);

@@ -114,7 +114,7 @@ TEST(Shards, AddUpToTheCompleteImage) {
     Film sum = once.film;
     for (int row = 0; row < sum.height(); ++row)
       for (int column = 0; column < sum.width(); ++column)
-        sum.at(column, row) = {.blockSize = sum.at(column, row).blockSize};
+        sum.at(column, row) = {.blockSize = sum.at(column, row).blockSize}; // no samples
     for (int index = 0; index < count; ++index) {
       settings.shard = {index, count};
       const Film shard = scene.render(settings).film;
@@ -131,7 +131,7 @@ TEST(Shards, AddUpToTheCompleteImage) {
 
 TEST(Tiles, ShardsAreEquallyLargeAndScattered) {
   const Tiles tiles(500, 300);
-  EXPECT_EQ(tiles.count(), 63 * 38);
+  EXPECT_EQ(tiles.count(), 63 * 38); // of 8 x 8 pixels
   for (const int count : {1, 3, 7, 16}) {
     std::vector<int> owners(static_cast<std::size_t>(tiles.count()), 0);
     for (int index = 0; index < count; ++index) {

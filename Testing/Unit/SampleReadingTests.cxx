@@ -133,10 +133,10 @@ std::string deflateBytes(const std::string& bytes, int windowBits) {
   return out;
 }
 
-std::string zlib(const std::string& bytes) {
+std::string compressZlib(const std::string& bytes) {
   return deflateBytes(bytes, 15);
 }
-std::string gzip(const std::string& bytes) {
+std::string compressGzip(const std::string& bytes) {
   return deflateBytes(bytes, 15 + 16);
 }
 
@@ -162,18 +162,19 @@ TEST(SampleReading, ReadsBothByteOrdersInEveryEncoding) {
   for (const auto& path : {
            folder.write("raw-little.nrrd", makeNrrdHeader("raw", "little") + little),
            folder.write("raw-big.nrrd", makeNrrdHeader("raw", "big") + big),
-           folder.write("gzip-little.nrrd", makeNrrdHeader("gzip", "little") + gzip(little)),
-           folder.write("gzip-big.nrrd", makeNrrdHeader("gzip", "big") + gzip(big)),
+           folder.write("gzip-little.nrrd",
+                        makeNrrdHeader("gzip", "little") + compressGzip(little)),
+           folder.write("gzip-big.nrrd", makeNrrdHeader("gzip", "big") + compressGzip(big)),
            folder.write("raw-little.mha",
                         makeMetaHeader("BinaryDataByteOrderMSB = False\n") + little),
            folder.write("raw-big.mha", makeMetaHeader("ElementByteOrderMSB = True\n") + big),
            folder.write("raw-native.mha", makeMetaHeader("") + rawBytes(samples)),
            folder.write("zlib-little.mha",
                         makeMetaHeader("BinaryDataByteOrderMSB = 0\nCompressedData = True\n") +
-                            zlib(little)),
+                            compressZlib(little)),
            folder.write("zlib-big.mha",
                         makeMetaHeader("BinaryDataByteOrderMSB = 1\nCompressedData = True\n") +
-                            zlib(big)),
+                            compressZlib(big)),
        }) {
     const Volume volume = readVolume(path);
     EXPECT_TRUE(std::ranges::equal(std::get<LargeArray<std::int16_t>>(volume.voxels), samples))
@@ -190,16 +191,17 @@ TEST(SampleReading, RefusesStreamsOfWrongLength) {
     const auto path = folder.write(name, content);
     expectRefused(path, "is damaged or truncated", [&] { readVolume(path); });
   };
-  const std::string compressed = gzip(samples);
+  const std::string compressed = compressGzip(samples);
   const std::string head = makeNrrdHeader("gzip", "little");
-  refuse("short.nrrd", head + gzip(samples.substr(2)));
-  refuse("long.nrrd", head + gzip(samples + "x"));
+  refuse("short.nrrd", head + compressGzip(samples.substr(2)));
+  refuse("long.nrrd", head + compressGzip(samples + "x"));
   refuse("cut.nrrd", head + compressed.substr(0, compressed.size() - 3));
   std::string corrupted = compressed;
   corrupted[corrupted.size() - 8] =
       static_cast<char>(~corrupted[corrupted.size() - 8]); // byte of the checksum
   refuse("checksum.nrrd", head + corrupted);
-  refuse("cut.mha", makeMetaHeader("CompressedData = True\n") + zlib(samples).substr(0, 5000));
+  refuse("cut.mha",
+         makeMetaHeader("CompressedData = True\n") + compressZlib(samples).substr(0, 5000));
 }
 
 } // namespace

@@ -31,8 +31,9 @@ Dimensions toDimensions(const PrimarySamples& numbers) {
           choices.y()};
 }
 
-/// Number of the sample at an offset in a block of one half buffer.
-std::uint64_t sampleIndex(std::uint64_t block, std::uint64_t half, std::uint64_t offset) {
+/// Number of the sample at an offset in a block of one half buffer. Samples alternate between the
+/// two half buffers of the film.
+std::uint64_t toSampleIndex(std::uint64_t block, std::uint64_t half, std::uint64_t offset) {
   return 2 * (block * size + offset) + half;
 }
 
@@ -69,7 +70,7 @@ TEST(StratifiedSampler, BlockHitsEachStratumOnce) {
         std::array<std::set<std::size_t>, dimensionCount> boxes; // of pair i: [2 i] and [2 i + 1]
         for (std::uint64_t offset = 0; offset < size; ++offset) {
           const Dimensions values =
-              toDimensions(sampler.generate(pixel, sampleIndex(block, half, offset)));
+              toDimensions(sampler.generate(pixel, toSampleIndex(block, half, offset)));
           for (std::size_t i = 0; i < dimensionCount; ++i)
             strata[i].insert(findCell(values[i], size));
           for (std::size_t i = 0; i < dimensionCount; i += 2) {
@@ -117,8 +118,8 @@ TEST(StratifiedSampler, PairsOfDimensionsAreShuffledIndependently) {
     for (const auto& [i, j] : {std::pair{0U, 4U}, {0U, 6U}, {2U, 6U}, {4U, 6U}}) {
       std::vector<double> counts((size - 1) * (size - 1), 0.0);
       for (std::uint64_t pixel = 0; pixel < 40000; ++pixel) {
-        const Dimensions a = toDimensions(sampler.generate(pixel, sampleIndex(0, 0, 0)));
-        const Dimensions b = toDimensions(sampler.generate(pixel, sampleIndex(0, 0, offset)));
+        const Dimensions a = toDimensions(sampler.generate(pixel, toSampleIndex(0, 0, 0)));
+        const Dimensions b = toDimensions(sampler.generate(pixel, toSampleIndex(0, 0, offset)));
         const std::size_t first = findCell(a[i], size) ^ findCell(b[i], size);
         const std::size_t second = findCell(a[j], size) ^ findCell(b[j], size);
         ASSERT_TRUE(first > 0 && second > 0);
@@ -132,10 +133,10 @@ TEST(StratifiedSampler, PairsOfDimensionsAreShuffledIndependently) {
 
 TEST(StratifiedSampler, HalfBuffersAndBlocksAreIndependent) {
   const Sampler sampler(Sampling::stratified, 13);
-  const std::uint64_t reference = sampleIndex(0, 0, 3);
+  const std::uint64_t reference = toSampleIndex(0, 0, 3);
   for (std::uint64_t offset = 0; offset < size; ++offset)
     for (const std::uint64_t other :
-         {sampleIndex(0, 1, offset), sampleIndex(1, 0, offset), sampleIndex(1, 1, offset)})
+         {toSampleIndex(0, 1, offset), toSampleIndex(1, 0, offset), toSampleIndex(1, 1, offset)})
       for (std::size_t i = 0; i < dimensionCount; ++i)
         expectJointlyUniform(
             [&](std::uint64_t pixel) {

@@ -51,7 +51,7 @@ std::string misbehave(const std::string& how) {
     return std::string(3 * memoryLimit / 2, 'x');
   if (how == "pid")
     return std::to_string(::getpid());
-  constexpr int connection = 3;
+  constexpr int connection = 3; // descriptor of the socket to the parent
   if (how == "half a frame" && ::write(connection, "\1\0\0", 3) == 3)
     std::_Exit(0);
   const std::uint64_t length = how == "endless frame" ? ~std::uint64_t{0} : 100;

@@ -70,7 +70,7 @@ TEST_P(SceneChange, UpdatesOnlyDependentStages) {
   EXPECT_EQ(changed.updatedStages(), GetParam().updated);
 
   const PreparedScene fresh(request);
-  const bool isTinted = request.materials != noMaterials;
+  const bool isTinted = request.materials != noMaterials; // updates the tint and the label weights
   EXPECT_EQ(fresh.updatedStages(),
             (UpdatedStages{true, true, true, true, true, true, true, true, isTinted, isTinted}));
   EXPECT_EQ(changed.files(), fresh.files());

@@ -169,7 +169,7 @@ TEST(SceneFiles, RefusesEntriesBeyondTheSizeLimit) {
   const std::size_t entry = bytes.rfind("PK\1\2"); // last entry of the central directory
   ASSERT_EQ(bytes.substr(entry + 46, 3), "big");
   for (const char* size : {"\0\0\0\x60", "\0\0\0\x70"}) { // 1.6 and 1.9 GB
-    bytes.replace(entry + 24, 4, size, 4);
+    bytes.replace(entry + 24, 4, size, 4);                // its unpacked size
     folder.write("b.mrb", bytes);
     SceneFiles files(folder / "b.mrb");
     expectRefused(folder / "b.mrb", "unpacks, together with the files before it, to more than",

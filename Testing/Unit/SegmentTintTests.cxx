@@ -40,7 +40,7 @@ TintPlan makePlan(const Handle<SegmentsInput>& segments, const Handle<NamedMater
   return makeTintPlan(segments, isNonEmpty, materials, changes, focus, skin);
 }
 
-using Parts = std::vector<TintPart>;
+using Parts = std::vector<TintPart>; ///< each: segments, priority, component; is it the focus?
 
 TEST(SegmentTint, MakesOnePartPerColorAndPriority) {
   const auto segments = makeRow({"kidney_left", "empty", "aorta", "kidney_right", "body_trunc"});

@@ -13,7 +13,7 @@ Grid makeGrid(const Size3& size, const Vec3& origin = Vec3::Zero(), double spaci
   return {size, makeTranslation(origin) * makeScaling(Vec3::Constant(spacing))};
 }
 
-std::int64_t index(const Grid& grid, std::int64_t x, std::int64_t y, std::int64_t z) {
+std::int64_t toIndex(const Grid& grid, std::int64_t x, std::int64_t y, std::int64_t z) {
   return x + grid.size.x() * (y + grid.size.y() * z);
 }
 
@@ -22,7 +22,7 @@ int getVoxel(const Mask& mask, const Vec3& world) {
   const Size3 v = i.array().round().cast<std::int64_t>();
   if ((v.array() < 0).any() || (v.array() >= mask.grid.size.array()).any())
     return 0;
-  return mask.voxels[static_cast<std::size_t>(index(mask.grid, v.x(), v.y(), v.z()))];
+  return mask.voxels[static_cast<std::size_t>(toIndex(mask.grid, v.x(), v.y(), v.z()))];
 }
 
 /// Labelmap of 6^3 voxels of `spacing` mm with some labels.
@@ -32,7 +32,7 @@ Segmentation makeLabelmap(const std::vector<std::pair<Size3, int>>& labels,
   LargeArray<std::uint8_t> voxels(216, 0);
   std::vector<SegmentInfo> segments;
   for (const auto& [voxel, label] : labels) {
-    voxels[static_cast<std::size_t>(index(grid, voxel.x(), voxel.y(), voxel.z()))] =
+    voxels[static_cast<std::size_t>(toIndex(grid, voxel.x(), voxel.y(), voxel.z()))] =
         static_cast<std::uint8_t>(label);
     const std::string name = "Segment_" + std::to_string(label);
     segments.push_back({.id = name, .name = name, .labelValue = label});
@@ -199,7 +199,7 @@ Vec3 computeCentroid(const Segmentation& segmentation, const std::string& select
   for (std::int64_t z = 0; z < mask.grid.size.z(); ++z)
     for (std::int64_t y = 0; y < mask.grid.size.y(); ++y)
       for (std::int64_t x = 0; x < mask.grid.size.x(); ++x)
-        if (mask.voxels[static_cast<std::size_t>(index(mask.grid, x, y, z))] != 0)
+        if (mask.voxels[static_cast<std::size_t>(toIndex(mask.grid, x, y, z))] != 0)
           sum += mask.grid.indexToWorld * Size3(x, y, z).cast<double>();
   return sum / static_cast<double>(mask.count);
 }
@@ -373,7 +373,7 @@ TEST(SegmentationReader, StatisticsHaveVoxelsAndBoundsOfEachSegment) {
   const Grid grid({4, 5, 6}, map);
   LargeArray<std::uint8_t> labels(240, 0); // two layers
   for (const Size3& voxel : {Size3(1, 2, 3), Size3(2, 2, 3), Size3(1, 4, 5)})
-    labels[2 * static_cast<std::size_t>(index(grid, voxel.x(), voxel.y(), voxel.z()))] = 1;
+    labels[2 * static_cast<std::size_t>(toIndex(grid, voxel.x(), voxel.y(), voxel.z()))] = 1;
   labels[1] = 1;
   const Segmentation s("test", grid, 2, labels,
                        {{.id = "a", .name = "a"},

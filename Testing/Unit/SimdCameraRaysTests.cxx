@@ -137,7 +137,7 @@ TEST_P(SimdCameraRays, RaysMatchDoublePrecision) {
       std::size_t hits = 0;
       for (std::uint64_t pixel = 0; pixel + RayBatch::capacity < width * height; pixel += 400) {
         fill(*samples, Sampler(Sampling::stratified, pixel), pixel, 0);
-        paths->rays.size = 3;
+        paths->rays.size = 3; // the new rays are appended
         beginPaths(tracker.medium(), cameraTable, cameraRays, *samples, *paths);
         for (std::size_t i = 0; i < samples->size; ++i) {
           const std::size_t at = i + 3;

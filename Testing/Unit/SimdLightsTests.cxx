@@ -70,12 +70,14 @@ struct Fog {
   MajorantGrid majorants{volume.grid, MinMaxGrid(volume, 0), transfer, ClipNone{}};
   Clip clip = ClipNone{};
   SimdTracker tracker{volume, domain, transfer, majorants, clip};
+  static constexpr std::uint64_t maxBounces = 100;
+  static constexpr bool normalsWanted = false;
   LightSet lights;
   SimdShading events;
 
   explicit Fog(const std::vector<Light>& lightList)
       : lights(lightList, volume.grid, makeCamera()),
-        events(volume.grid, transfer, lights, 100, false) {}
+        events(volume.grid, transfer, lights, maxBounces, normalsWanted) {}
 
   static Camera makeCamera() {
     CameraPose pose;

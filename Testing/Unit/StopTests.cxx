@@ -65,7 +65,7 @@ TEST(Stop, EndsTrackingOfARayBatch) {
     Counters counters;
     tracker.sampleCollisions(*rays, counters);
     tracker.estimateTransmittances(*rays, counters);
-    constexpr std::uint64_t maxLanes = 2 * 16;
+    constexpr std::uint64_t maxLanes = 2 * 16; // two sets of at most 16 (AVX-512)
     EXPECT_LE(counters.lookups, 2 * stopPollInterval * maxLanes);
   });
 }

@@ -42,7 +42,7 @@ Camera makeSlantedCamera(Projection projection, int width = 48, int height = 36)
   return {pose, width, height};
 }
 
-double waveDepth(const Camera& camera, const Vec2& p) {
+double computeWaveDepth(const Camera& camera, const Vec2& p) {
   return camera.targetDepth() + 5.0 * std::sin(0.1 * p.x()) - 3.0 * std::cos(0.2 * p.y());
 }
 
@@ -56,19 +56,21 @@ std::map<std::string, Shape> makeShapes(const Camera& camera) {
         .uniform();
   };
   return {
-      {"waves", [=](const Vec2& p) { return waveDepth(camera, p); }},
+      {"waves", [=](const Vec2& p) { return computeWaveDepth(camera, p); }},
       {"a slanted step", [=](const Vec2& p) { return p.x() < 0.37 * p.y() ? at : at + 15.0; }},
       {"a thin wall", [=](const Vec2& p) { return std::abs(p.x()) < 0.6 * pitch ? at - 9.0 : at; }},
       {"a spike", [=](const Vec2& p) { return p.norm() < pitch ? at - 20.0 : at; }},
       {"noise", [=](const Vec2& p) { return at + 20.0 * random(p); }},
       {"a little noise", [=](const Vec2& p) { return at + 0.2 * random(p); }},
-      {"a disk", [=](const Vec2& p) { return p.norm() < 8.3 ? waveDepth(camera, p) : -infinity; }},
-      {"torn", [=](const Vec2& p) { return random(p) < 0.6 ? waveDepth(camera, p) : -infinity; }},
+      {"a disk",
+       [=](const Vec2& p) { return p.norm() < 8.3 ? computeWaveDepth(camera, p) : -infinity; }},
+      {"torn",
+       [=](const Vec2& p) { return random(p) < 0.6 ? computeWaveDepth(camera, p) : -infinity; }},
   };
 }
 
 /// Signed area on the plane through the target, mm^2; positive if counter-clockwise.
-double signedArea(const Vec2& a, const Vec2& b, const Vec2& c) {
+double computeSignedArea(const Vec2& a, const Vec2& b, const Vec2& c) {
   return 0.5 * ((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x());
 }
 
@@ -125,7 +127,7 @@ TEST(SurfaceMesh, PointsProjectToSamplesAndHaveTheirDepths) {
     const Camera camera = makeSlantedCamera(projection);
     const Grid volume = makeCenteredGrid({60, 50, 40});
     const ClipDepth clip =
-        makeClip(camera, volume, [&](const Vec2& p) { return waveDepth(camera, p); });
+        makeClip(camera, volume, [&](const Vec2& p) { return computeWaveDepth(camera, p); });
     const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, 1e-3);
     expectValidMesh(mesh, camera);
     std::set<std::pair<long, long>> samples;
@@ -217,15 +219,16 @@ MeshError measureError(const SurfaceMesh& mesh, const ClipDepth& clip) {
       lower = lower.cwiseMin(index);
       upper = upper.cwiseMax(index);
     }
-    const double area = signedArea(at[0], at[1], at[2]);
+    const double area = computeSignedArea(at[0], at[1], at[2]);
     const Vec3 normal = computeNormal(mesh, triangle);
     for (std::int64_t row = std::lround(lower.y()); row <= std::lround(upper.y()); ++row)
       for (std::int64_t column = std::lround(lower.x()); column <= std::lround(upper.x());
            ++column) {
         const Vec2 p = buffer.position(column, row);
-        const double inside = std::min({signedArea(at[0], at[1], p), signedArea(at[1], at[2], p),
-                                        signedArea(at[2], at[0], p)}) /
-                              area;
+        const double inside =
+            std::min({computeSignedArea(at[0], at[1], p), computeSignedArea(at[1], at[2], p),
+                      computeSignedArea(at[2], at[0], p)}) /
+            area;
         if (inside < -1e-7)
           continue;
         const Ray ray = clip.camera.makePlaneRay(p);
@@ -314,9 +317,9 @@ TEST(SurfaceMesh, CoversEveryCellWithAtLeastThreeDepths) {
     const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, 0.05);
     double area = 0.0;
     for (const auto& [a, b, c] : mesh.triangles)
-      area += signedArea(toBuffer(camera, mesh.points[a]).head<2>(),
-                         toBuffer(camera, mesh.points[b]).head<2>(),
-                         toBuffer(camera, mesh.points[c]).head<2>());
+      area += computeSignedArea(toBuffer(camera, mesh.points[a]).head<2>(),
+                                toBuffer(camera, mesh.points[b]).head<2>(),
+                                toBuffer(camera, mesh.points[c]).head<2>());
     EXPECT_NEAR(area, cells, 1e-9 * cells) << name;
   }
 }

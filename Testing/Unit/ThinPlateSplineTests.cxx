@@ -104,7 +104,8 @@ TEST(ThinPlateSpline, IsEquivariantUnderRotationTranslationAndScaling) {
     Data moved = data;
     for (Vec2& site : moved.sites)
       site = s * rotate(site) + Vec2(-300, 1000);
-    // lambda scales with s^2: for equal smoothing in mm, a larger copy of a shape is smoothed less.
+    // Smoothing is 1 / (1 + lambda), and lambda scales with s^2: for equal smoothing in mm, a
+    // larger copy of a shape is smoothed less.
     const double lambda = (1.0 - 0.5) / 0.5 * s * s;
     const ThinPlateSpline a = data.spline(0.5), b = moved.spline(1.0 / (1.0 + lambda));
     for (const Vec2& x : {Vec2(0, 0), Vec2(17, -33), Vec2(-90, 120)}) {
@@ -163,7 +164,7 @@ TEST(ThinPlateSpline, TilesAgreeWithPointsWithinTheTolerance) {
             for (const auto& [columns, rows] : {std::pair{64, 64}, {64, 1}, {1, 1}, {5, 13}}) {
               const Vec2 corner = distanceRatio * radius * randomPoint(random, -1, 1).head<2>();
               ++trials; // the offset of every fourth varies the tested tile shape
-              if ((trials + trials / 4) % fenestra::testing::sampleDivisor() != 0)
+              if ((trials + trials / 4) % fenestra::testing::slowdownFactor() != 0)
                 continue;
               const double error =
                   findMaxTileError(spline, corner, pitch, static_cast<std::size_t>(columns),

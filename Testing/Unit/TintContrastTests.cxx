@@ -23,6 +23,7 @@ const Rgb liver = hexToLinear(0x963e2e), muscle = hexToLinear(0xa03e38),
           artery = hexToLinear(0xd62824), fat = hexToLinear(0xc59685),
           pancreas = hexToLinear(0xecc48a);
 
+// The last arguments 1.0, 0.0 below: the context keeps its saturation; scattering is isotropic.
 ColorAdjustment choose(const std::vector<InterfaceColors>& colors,
                        const ContextColors& context = {}) {
   return chooseAdjustment(colors, context, Adjustable::both, 1.0, 0.0);
@@ -201,6 +202,7 @@ TEST(TintContrast, ModelsShadedAndLitEdges) {
   }
   const Lab red{50.0, 40.0, 10.0};
   const InterfaceColors hues{toLinear(red), toLinear({50.0, 0.0, 0.0}), 1.0};
+  // toImageColor maps lightness L to 29 + 0.43 L, and scales chroma by 0.62 times their ratio.
   const double chroma = 0.62 * (29.0 + 0.43 * 50.0) / 50.0 * std::hypot(red.a, red.b);
   EXPECT_NEAR(measureAdjustedContrast({}, hues, 1.0, 0.0).deltaE[0], std::hypot(chroma, 4.0), 0.1);
 }

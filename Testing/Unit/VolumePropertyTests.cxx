@@ -21,7 +21,8 @@ double evalExtinction(const VolumeProperty& p, double x) {
   return -std::log1p(-std::min(interpolateCurve(p.scalarOpacity, x), 0.9999)) / p.unitDistance;
 }
 
-/// Largest relative error of the tabulated extinction, above the documented absolute floor.
+/// Largest relative error of the tabulated extinction. Absolute errors up to 1e-9 of its maximum
+/// are ignored.
 double findMaxExtinctionError(const VolumeProperty& p, const TransferFunction& f) {
   const double low = p.scalarOpacity.front().x, high = p.scalarOpacity.back().x;
   double maximum = 0.0;

@@ -32,6 +32,7 @@ Interval findUnclipped(const ClipDepth& clip, const Ray& cameraRay) {
   return {std::max(0.0, depth / depthPerLength), infinity};
 }
 
+/// cutGradient() of one kind of clip with a soft edge.
 Vec3 evaluateCut(const ClipNone&, const Vec3&) {
   return Vec3::Zero();
 }

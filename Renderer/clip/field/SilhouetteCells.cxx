@@ -29,8 +29,8 @@ std::vector<std::uint8_t> findOuterCells(const FocusDepth& focus, const CellRang
   return isOuter;
 }
 
-/// Depth bounds, mm, relative to the target, of the 4 x 4 samples around each cell. Doubled in
-/// length away from the camera, since a pit may be deeper than its samples.
+/// Depth bounds, mm, relative to the target, of the 4 x 4 samples around each cell. The interval is
+/// extended away from the camera to twice its length: a pit may be deeper than its samples.
 std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& buffer,
                                                              const CellRange& range) {
   constexpr std::int64_t width = 4;
@@ -153,7 +153,7 @@ void SilhouetteCells::move(double offset) {
 
 void SilhouetteCells::evaluate(std::span<Query> queries) const {
   QueryBatch inner, rest;
-  const double toFocus = m_reference - m_offset;
+  const double toFocus = m_reference - m_offset; // undoes move()
   const auto findBounds = [&](const Query& query) {
     const auto& [least, greatest] = m_depthBounds[static_cast<std::size_t>(query.cell)];
     return Interval{toFocus + least, toFocus + greatest};
@@ -182,7 +182,7 @@ void SilhouetteCells::evaluate(std::span<Query> queries) const {
     if (const DepthHit& hit = rest.results[i]; hit.indicator > FocusCells::captureThreshold) {
       Query& query = *rest.queries[i];
       const double depth = std::min(hit.depth, findBounds(query).end) - toFocus;
-      const double blend =
+      const double blend = // 0 at captureThreshold, 1 at the focus's surface (indicator 1/2)
           (hit.indicator - FocusCells::captureThreshold) / (0.5 - FocusCells::captureThreshold);
       query.depth += blend * (depth - query.depth);
     }

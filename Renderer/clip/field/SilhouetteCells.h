@@ -20,8 +20,8 @@
 //
 // The depth bounds of a cell contain all depths at which its rays can hit the focus; points outside
 // them need no query. In an inner cell, where all samples are focus, they are the depth range of
-// the samples around it, doubled in length away from the camera. Spikes and pits that are narrower
-// than the sample spacing and exceed the bounds are cut off.
+// the samples around it, extended away from the camera to twice its length. Spikes and pits that
+// are narrower than the sample spacing and exceed the bounds are cut off.
 
 #include "clip/focus/FocusDepth.h"
 

@@ -52,7 +52,8 @@ void visitSegments(const DepthBuffer& buffer, const std::vector<Contour>& contou
   for (const Contour& contour : contours)
     for (std::size_t i = 0; i < contour.size(); ++i) {
       const Crossing& next = contour[i + 1 < contour.size() ? i + 1 : 0];
-      visit(contour[i], next, (position(buffer, next) - position(buffer, contour[i])).norm());
+      visit(contour[i], next,
+            (computeMidpoint(buffer, next) - computeMidpoint(buffer, contour[i])).norm());
     }
 }
 
@@ -90,7 +91,7 @@ std::vector<Contour> traceContours(const FocusDepth& focus) {
   return contours;
 }
 
-Vec2 position(const DepthBuffer& buffer, const Crossing& crossing) {
+Vec2 computeMidpoint(const DepthBuffer& buffer, const Crossing& crossing) {
   const SampleStep out = outwardStep(crossing);
   return 0.5 * (buffer.position(crossing.column, crossing.row) +
                 buffer.position(crossing.column + out.column, crossing.row + out.row));

@@ -32,7 +32,7 @@ using Contour = std::vector<Crossing>;
 std::vector<Contour> traceContours(const FocusDepth& focus);
 
 /// Midpoint of the crossing's two samples, mm on the plane through the target.
-Vec2 position(const DepthBuffer& buffer, const Crossing& crossing);
+Vec2 computeMidpoint(const DepthBuffer& buffer, const Crossing& crossing);
 
 /// Focus sample on a contour: (x, y) in mm on the plane through the target, and its depth, mm.
 struct ControlPoint {

@@ -18,7 +18,8 @@ struct Rectangle {
 
 /// Bounds of the volume's projection on the plane through the target, mm.
 Rectangle projectVolume(const Camera& camera, const Grid& volume) {
-  const Vec2 limit = Vec2::Constant(camera.targetDepth() * std::tan(75.0 * pi / 180.0));
+  constexpr double maxAngle = 75.0 * pi / 180.0; // from the camera's axis, in perspective
+  const Vec2 limit = Vec2::Constant(camera.targetDepth() * std::tan(maxAngle));
   Rectangle rectangle;
   for (int i = 0; i < 8; ++i) {
     const Vec3 corner = toBuffer(camera, volume.worldCorner(i));
@@ -69,6 +70,7 @@ DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
       std::min(camera.width(), camera.height()) < 1)
     throw usageError("--scale, --angle and --size: the image is empty, or a pixel is smaller than "
                      "1e-15 of the volume; use larger values");
+  // Samples: 4 Mi or 5/4 of the viewport, whichever is more, and room for one on each side of it.
   const std::int64_t limit = std::max<std::int64_t>(
       {4 << 20, m_x.inside * m_y.inside * 5 / 4, (m_x.inside + 2) * (m_y.inside + 2)});
   const auto fits = [&](double factor) {

@@ -95,7 +95,7 @@ bool fillCorners(const Voxels& voxels, const Size3& block,
   bool isFull = true;
   for (std::size_t k = 0; k < edge; ++k)
     for (std::size_t j = 0; j < edge; ++j) {
-      const std::uint32_t both = 0x03030303U;
+      const std::uint32_t both = 0x03030303U; // bits 0 and 1 of each cell
       const std::uint32_t row =
           (neighborPairs[k][j] & both) | (neighborPairs[k][j + 1] & both) << 2 |
           (neighborPairs[k + 1][j] & both) << 4 | (neighborPairs[k + 1][j + 1] & both) << 6;
@@ -105,7 +105,7 @@ bool fillCorners(const Voxels& voxels, const Size3& block,
   return isFull;
 }
 
-/// Fills a block's corner values and returns their minimum.
+/// Fills a block's corner values (5 x 5 x 5, then padding) and returns their minimum.
 std::uint8_t fillValues(const Voxels& voxels, const Size3& block,
                         std::array<std::uint8_t, 128>& result) {
   std::uint8_t least = 255;

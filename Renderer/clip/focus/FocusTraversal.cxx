@@ -160,13 +160,14 @@ public:
     if (const M candidates = hn::And(isOccupied, m_busy); !hn::AllFalse(doubles, candidates)) {
       const I three = setInts(3);
       const I cell = linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 4, 4);
-      const I at = hn::Add(hn::ShiftLeft<6>(block), cell);
+      const I at = hn::Add(hn::ShiftLeft<6>(block), cell); // 64 cells per block
       const I corners = hn::And(
           hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.corners), at),
           setInts(0xff));
       if (const M occupied = hn::And(candidates, isNonZero(corners));
           !hn::AllFalse(doubles, occupied))
         intersect(occupied, corners,
+                  // BlockValues: 128 bytes per block, 5 values per row.
                   hn::Add(hn::ShiftLeft<7>(block),
                           linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 5, 5)),
                   exit);
@@ -184,8 +185,8 @@ public:
 
 private:
   /// Intersects the rays of `which` with the surface in their current cells and stops those that
-  /// hit it. The Bernstein coefficients bound a cubic: it is solved only if one is >= 0, or near
-  /// the maximum so far. `values`: index of a cell's first value.
+  /// hit it. The Bernstein coefficients (c0, b1, b2, b3) bound a cubic: it is solved only if one is
+  /// >= 0, or near the maximum so far. `values`: index of a cell's first value.
   HWY_INLINE void intersect(M which, I corners, I values, D exit) {
     const std::array<D, 8> v = m_cells.values ? smoothCorners(values) : binaryCorners(corners);
     const D length = hn::Sub(exit, m_t);
@@ -250,7 +251,8 @@ private:
     };
     std::array<D, 8> v;
     std::size_t i = 0;
-    for (const std::int32_t row : {0, 5, 25, 30}) { // two neighbors along x per gather
+    // Rows (y, z) of the 5 x 5 x 5 values of a block; two neighbors along x per gather.
+    for (const std::int32_t row : {0, 5, 25, 30}) {
       const I both = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.values),
                                       hn::Add(first, setInts(row)));
       v[i++] = value(both);
@@ -262,31 +264,33 @@ private:
   /// Searches the cubics of `which` one by one, except those of `rises`: they have exactly one
   /// root, and m_solver solves them later in batches.
   HWY_INLINE void solve(M which, const std::array<D, 4>& c, M rises, D length) {
-    alignas(64) std::array<LaneDoubles, 7> lanes;
+    alignas(64) std::array<LaneDoubles, 4> coefficients;
+    alignas(64) LaneDoubles begins, lengths, busy; // of segments in their cells; busy: 1 or 0
     for (std::size_t i = 0; i < 4; ++i)
-      hn::Store(c[i], doubles, lanes[i].data());
-    hn::Store(m_t, doubles, lanes[4].data());
-    hn::Store(length, doubles, lanes[5].data());
-    hn::Store(hn::IfThenElseZero(m_busy, set(1.0)), doubles, lanes[6].data());
+      hn::Store(c[i], doubles, coefficients[i].data());
+    hn::Store(m_t, doubles, begins.data());
+    hn::Store(length, doubles, lengths.data());
+    hn::Store(hn::IfThenElseZero(m_busy, set(1.0)), doubles, busy.data());
     const unsigned pending = maskBits(which);
     const unsigned rising = maskBits(rises);
     for (unsigned left = pending; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-      const Cubic cubic{{lanes[0][lane], lanes[1][lane], lanes[2][lane], lanes[3][lane]}};
+      const Cubic cubic{{coefficients[0][lane], coefficients[1][lane], coefficients[2][lane],
+                         coefficients[3][lane]}};
       const bool isRising = rising >> lane & 1;
       const double s = isRising ? 0.0 : findFirstNonNegative(cubic);
       if (s == infinity) {
         if constexpr (withMaxima)
-          updateMaximum(lane, cubic, lanes[4][lane], lanes[5][lane]);
+          updateMaximum(lane, cubic, begins[lane], lengths[lane]);
         continue;
       }
-      lanes[6][lane] = 0.0;
+      busy[lane] = 0.0;
       if (isRising)
-        m_solver.add(cubic, lanes[4][lane], lanes[5][lane], m_first + lane);
+        m_solver.add(cubic, begins[lane], lengths[lane], m_first + lane);
       else
-        m_rays.hitT[m_first + lane] = lanes[4][lane] + s * lanes[5][lane];
+        m_rays.hitT[m_first + lane] = begins[lane] + s * lengths[lane];
     }
-    m_busy = hn::Gt(hn::Load(doubles, lanes[6].data()), hn::Zero(doubles));
+    m_busy = hn::Gt(hn::Load(doubles, busy.data()), hn::Zero(doubles));
   }
 
   /// Updates the ray maximum in a cell without a hit.
@@ -306,7 +310,7 @@ private:
     }
   }
 
-  /// True if a value on the same ridge replaces the maximum so far.
+  /// True if a value on the same ridge replaces the maximum so far. `height`: indicator - 1/2, < 0.
   bool isHigher(std::size_t lane, double height) const {
     const double least = std::min(ridgeTolerance, -height / FocusCells::replaceRatio);
     return height > m_maxima[lane] + std::max(plateauTolerance, least);

@@ -69,7 +69,8 @@ private:
 DomainFootprint::DomainFootprint(const Camera& camera, const Domain& domain) {
   for (const Vec3& corner : domain.indexCorners()) {
     const Vec3 at = toBuffer(camera, domain.grid().indexToWorld * corner);
-    m_isInFront = m_isInFront && at.z() > 1e-3 * camera.targetDepth();
+    m_isInFront =
+        m_isInFront && at.z() > 1e-3 * camera.targetDepth(); // depth 0 is projected to infinity
     m_corners.emplace_back(at.head<2>());
   }
 }
@@ -89,8 +90,9 @@ DomainFootprint::Columns DomainFootprint::columns(const DepthBuffer& buffer,
       for (const double y : {std::max(low, a.y()), std::min(high, b.y())}) {
         const double fraction = b.y() > a.y() ? (y - a.y()) / (b.y() - a.y()) : 0.0;
         const double x = a.x() + fraction * (b.x() - a.x());
-        first = std::min({first, x, b.y() > a.y() ? x : b.x()});
-        last = std::max({last, x, b.y() > a.y() ? x : b.x()});
+        const double otherX = b.y() > a.y() ? x : b.x(); // a horizontal edge counts with both ends
+        first = std::min({first, x, otherX});
+        last = std::max({last, x, otherX});
       }
     }
   if (!(first <= last))

@@ -35,6 +35,7 @@ std::string encodeDataArray(const char* name, const char* type, int components,
                 components, "\" format=\"binary\">", toBase64(bytes), "</DataArray>\n");
 }
 
+/// The array SPACE states the coordinate system, as in Slicer's files; "82 65 83 0" is "RAS".
 std::string encodeVtp(const SurfaceMesh& surface) {
   std::vector<std::int32_t> ends;
   for (std::size_t i = 1; i <= surface.triangles.size(); ++i)
@@ -73,7 +74,7 @@ std::string encodePly(const SurfaceMesh& surface) {
 
 std::string encodeStl(const SurfaceMesh& surface) {
   std::string bytes = "Fenestra clipping surface SPACE=RAS";
-  bytes.resize(80, ' ');
+  bytes.resize(80, ' '); // STL header
   append(bytes, static_cast<std::uint32_t>(surface.triangles.size()));
   for (const auto& [a, b, c] : surface.triangles) {
     const Vec3& corner = surface.points[a];
@@ -81,7 +82,7 @@ std::string encodeStl(const SurfaceMesh& surface) {
                  (surface.points[b] - corner).cross(surface.points[c] - corner).normalized());
     for (const std::uint32_t point : {a, b, c})
       appendFloats(bytes, surface.points[point]);
-    append(bytes, std::uint16_t{0});
+    append(bytes, std::uint16_t{0}); // attribute byte count
   }
   return bytes;
 }

@@ -21,7 +21,7 @@ enum class SurfaceMode {
 
 /// How the surface continues from the focus into the context.
 enum class Boundary {
-  spline, ///< the paper's method: a thin plate spline, fitted to control points
+  spline, ///< as in the paper (CITATION.cff): a thin plate spline, fitted to control points
   exact,  ///< from all boundary points of the focus, with the slope of the focus (SmoothFill.h)
 };
 
@@ -41,7 +41,7 @@ struct ClippingSurface {
   Clip clip;                                 ///< a ClipDepth
   FocusDepth focus;                          ///< over the samples of the clip's buffer
   std::vector<ControlPoint> controlPoints{}; ///< empty unless the boundary is a spline
-  /// Spline boundary only: |f(x) - z|, mm, at the focus samples (x, depth z) on the contours.
+  /// Spline f only: |f(x) - z|, mm, at the focus samples on the contours, at x with depth z.
   std::optional<Distribution> mismatch{};
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
   std::vector<std::string> warnings{};

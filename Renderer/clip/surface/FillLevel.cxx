@@ -25,6 +25,7 @@ void FillLevel::trimFocus() {
   const std::vector<float> untrimmed = m_coverage;
   for (std::size_t at = m_stride + 1; at + m_stride + 1 < untrimmed.size(); ++at)
     if (untrimmed[at] > 0.0f) {
+      // A quadrant of the sample is covered as far as the three neighbors around it are.
       float corners = 0.0f;
       for (const std::size_t row : {at - m_stride, at + m_stride})
         for (const std::size_t column : {at - 1, at + 1})
@@ -52,7 +53,7 @@ FillLevel FillLevel::coarsen() const {
 
 void FillLevel::extendBoundary(double length) {
   const std::vector<float> own = m_depth;
-  std::vector<std::uint8_t> known(m_depth.size(), 0);
+  std::vector<std::uint8_t> known(m_depth.size(), 0); // 1: depth is set
   findBoundary();
   std::vector<std::size_t> front, next;
   for (const float free : {0.0f, 1.0f}) { // inward first: the outward pass uses those slopes

@@ -164,7 +164,7 @@ private:
   /// Finds the focus samples next to free ones.
   void findBoundary();
 
-  /// Computes m_boundary. `stiffness`: limit of the boundary's weight relative to the plate's.
+  /// Computes m_boundary. `stiffness`: largest factor on weights at the boundary.
   void computeBoundary(float stiffness);
 
   BoundarySample makeBoundarySample(std::size_t at, float stiffness) const;

@@ -143,7 +143,7 @@ void FillLevel::relax(double length, int steps) {
   const double maxWeightSum = 2.0 * (m_x.maxWeightSum() + m_y.maxWeightSum());
   const double high =
       maxStiffness * maxWeightSum * (maxWeightSum + tension); // bounds the operator's eigenvalues
-  const double low = high / (0.25 * steps * steps);
+  const double low = high / (0.25 * steps * steps);           // lowest that the steps damp well
   const double center = 0.5 * (high + low), radius = 0.5 * (high - low);
   // Uninitialized, since only samples near the boundary are accessed.
   const auto laplacian = std::make_unique_for_overwrite<float[]>(m_depth.size());
@@ -154,6 +154,7 @@ void FillLevel::relax(double length, int steps) {
       std::fill_n(&laplacian[first], run.end - run.begin + 2, 0.0f);
       std::fill_n(&change[first], run.end - run.begin + 2, 0.0f);
     }
+  // Chebyshev iteration (Saad 2003, algorithm 12.1, whose rho this is).
   double rho = radius / center;
   double momentum = 0.0, step = 1.0 / center;
   for (int i = 0; i < steps; ++i) {

@@ -11,7 +11,7 @@ Vec2 solveMinimumNorm(double xx, double xy, double yy, const Vec2& r) {
   const double trace = xx + yy, determinant = xx * yy - xy * xy;
   if (determinant > singular * trace * trace)
     return Vec2(yy * r.x() - xy * r.y(), xx * r.y() - xy * r.x()) / determinant;
-  return trace > 0.0 ? Vec2(r / trace) : Vec2::Zero(); // S is trace d d'
+  return trace > 0.0 ? Vec2(r / trace) : Vec2::Zero(); // S is trace d d', d a unit vector
 }
 
 } // namespace

@@ -25,14 +25,14 @@ constexpr auto binomials = [] {
   return rows;
 }();
 
-/// P and Q, of equal length.
+/// P and Q of LocalExpansion.h, of equal length.
 struct Polynomials {
   std::vector<Complex> p, q;
 };
 
 /// Terms as a structure of arrays.
 struct Terms {
-  Eigen::ArrayXd x, y, weight; ///< d = x + i y
+  Eigen::ArrayXd x, y, weight; ///< d = site - center = x + i y
 
   Terms(std::span<const KernelTerm> terms, const Vec2& center)
       : x(std::ssize(terms)), y(x.size()), weight(x.size()) {

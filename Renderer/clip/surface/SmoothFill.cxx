@@ -29,7 +29,7 @@ void fillSmoothly(DepthBuffer& buffer, const std::vector<Region>& regions, doubl
   while (!levels.back().isSmall() &&
          (levels.back().pitch() < 0.25 * length || !levels.back().isSolvable()))
     levels.push_back(levels.back().coarsen());
-  constexpr int minSteps = 24;
+  constexpr int minSteps = 24; // at the finest level
   levels.back().solve(length);
   for (std::size_t i = levels.size() - 1; i-- > 0;) {
     levels[i].prolongate(levels[i + 1]);

@@ -43,8 +43,9 @@ ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, c
   if (degrees == 0.0 || options.mode != SurfaceMode::surface)
     return surface;
   struct Neighbor {
-    double angle, weight;
+    double angle, weight; // angle: in units of `degrees`
   };
+  // Binomial weights; the remaining 6/16 are those of the surface at 0 degrees.
   static constexpr Neighbor neighbors[] = {
       {-1.0, 1.0 / 16.0}, {-0.5, 4.0 / 16.0}, {0.5, 4.0 / 16.0}, {1.0, 1.0 / 16.0}};
   const auto& own = std::get<ClipDepth>(surface.clip);

@@ -255,7 +255,7 @@ void ThinPlateSpline::evaluateTile(std::span<const double> x, std::span<const do
   std::vector<KernelTerm> near, far;
   std::ranges::partition_copy(m_terms, std::back_inserter(far), std::back_inserter(near),
                               [&](const KernelTerm& term) { return disk.isFar(term); });
-  const double extent = disk.center.norm() + disk.radius;
+  const double extent = disk.center.norm() + disk.radius; // bounds |u| in the tile
   const bool isSummable = near.empty() || extent * extent <= farRadiusSquared;
   std::optional<LocalExpansion> expansion;
   if (isSummable)

@@ -10,16 +10,16 @@ namespace {
 /// camera ray hits anything, so that no window blurs a silhouette into the background. The mask
 /// must not depend on the samples: their noise would bias the error estimate.
 std::vector<std::uint8_t> findActivePixels(const Film& film, const FeatureBuffers& features) {
-  std::vector<std::uint8_t> isOpen(film.pixelCount());
+  std::vector<std::uint8_t> isActive(film.pixelCount());
   for (int row = 0; row < film.height(); ++row)
     for (int column = 0; column < film.width(); ++column) {
       bool isEmpty = true;
       for (int y = std::max(row - 1, 0); y <= std::min(row + 1, film.height() - 1); ++y)
         for (int x = std::max(column - 1, 0); x <= std::min(column + 1, film.width() - 1); ++x)
           isEmpty = isEmpty && features.hit[film.index(x, y)] == 0.0F;
-      isOpen[film.index(column, row)] = !isEmpty && !film.at(column, row).isDeterministic;
+      isActive[film.index(column, row)] = !isEmpty && !film.at(column, row).isDeterministic;
     }
-  return isOpen;
+  return isActive;
 }
 
 /// Fills the half buffers. Inactive pixels, and films without halves, get the mean in both.

@@ -20,13 +20,13 @@ struct Raster {
 
 /// True if two neighboring pixels differ by more than fixed thresholds. `pitch`: mm between pixels.
 bool areDifferent(const PrimaryHit& a, const PrimaryHit& b, double pitch) {
-  constexpr float colors = 0.08F, slope = 4.0F;
-  const auto isFar = [&](std::size_t c) { return std::abs(a.albedo[c] - b.albedo[c]) > colors; };
-  if (isFar(0) || isFar(1) || isFar(2) || std::abs(a.hit - b.hit) > colors)
+  constexpr float maxChange = 0.08F, maxSlope = 4.0F; // of albedo and hit; of depth
+  const auto isFar = [&](std::size_t c) { return std::abs(a.albedo[c] - b.albedo[c]) > maxChange; };
+  if (isFar(0) || isFar(1) || isFar(2) || std::abs(a.hit - b.hit) > maxChange)
     return true;
   const float both = std::min(a.hit, b.hit);
   return both > 0.0F &&
-         std::abs(a.depth / a.hit - b.depth / b.hit) * both > slope * static_cast<float>(pitch);
+         std::abs(a.depth / a.hit - b.depth / b.hit) * both > maxSlope * static_cast<float>(pitch);
 }
 
 bool isAtEdge(const Raster& raster, int column, int row, double pitch) {
@@ -191,18 +191,18 @@ private:
 
 FeatureBuffers toFeatures(const Raster& raster) {
   FeatureBuffers features;
-  const auto plane = [&](Plane& values, auto&& valueOf) {
+  const auto fill = [&](Plane& values, auto&& getValue) {
     values.reserve(raster.pixels.size());
     for (const PrimaryHit& primary : raster.pixels)
-      values.push_back(valueOf(primary));
+      values.push_back(getValue(primary));
   };
-  plane(features.hit, [](const PrimaryHit& primary) { return primary.hit; });
-  plane(features.depth, [](const PrimaryHit& primary) { return primary.depth; });
+  fill(features.hit, [](const PrimaryHit& primary) { return primary.hit; });
+  fill(features.depth, [](const PrimaryHit& primary) { return primary.depth; });
   for (std::size_t c = 0; c < 3; ++c) {
-    plane(features.albedo[c], [c](const PrimaryHit& primary) { return primary.albedo[c]; });
-    plane(features.normal[c], [c](const PrimaryHit& primary) { return primary.normal[c]; });
-    plane(features.surfaceNormal[c],
-          [c](const PrimaryHit& primary) { return primary.surfaceNormal[c]; });
+    fill(features.albedo[c], [c](const PrimaryHit& primary) { return primary.albedo[c]; });
+    fill(features.normal[c], [c](const PrimaryHit& primary) { return primary.normal[c]; });
+    fill(features.surfaceNormal[c],
+         [c](const PrimaryHit& primary) { return primary.surfaceNormal[c]; });
   }
   return features;
 }

@@ -22,15 +22,15 @@ struct ErrorPlanes {
 ErrorPlanes estimatePlanes(const FitInput& fit, const std::vector<Plane>& filtered,
                            const FilteredImage& image) {
   ErrorPlanes planes;
-  const std::size_t other = fit.color.size() / 2;
+  const std::size_t odd = fit.color.size() / 2; // first plane of the second half buffer
   for (std::size_t c = 0; c < 3; ++c) {
     planes.variance[c].resize(fit.active.size());
     planes.bias[c].resize(fit.active.size());
     for (std::size_t i = 0; i < fit.active.size(); ++i) {
       if (fit.active[i] == 0.0F)
         continue; // its colors may be infinite
-      const ErrorEstimate estimate = estimateError(filtered[c][i], filtered[other + c][i],
-                                                   fit.color[c][i], fit.color[other + c][i]);
+      const ErrorEstimate estimate = estimateError(filtered[c][i], filtered[odd + c][i],
+                                                   fit.color[c][i], fit.color[odd + c][i]);
       // Limits the relative variance to 1, where windows extend into black regions.
       const float weight = std::min(relativeWeight(image.color[c][i]), 1.0F / estimate.variance);
       planes.variance[c][i] = weight * estimate.variance;
@@ -90,6 +90,7 @@ void estimateErrors(const FitInput& fit, const std::vector<Plane>& filtered, Fil
     nearSum += sumPlane(image.error[c]) / (3.0 * count);
     wideSum += sumPlane(local[c]) / (3.0 * count);
   }
+  // Half of the bias is distributed by each, or all by one if the other is 0.
   const double varianceScale =
       nearSum > 0.0 ? (wideSum > 0.0 ? 0.5 : 1.0) * bias.mean / nearSum : 0.0;
   const double biasScale = wideSum > 0.0 ? (nearSum > 0.0 ? 0.5 : 1.0) * bias.mean / wideSum : 0.0;

@@ -118,10 +118,10 @@ public:
     return average([&](std::size_t c, std::size_t i) { return variance[c][i]; });
   }
   Plane score(const FittedPlanes& fitted) const {
-    const std::size_t other = fitted.size() / 2;
+    const std::size_t odd = fitted.size() / 2; // first plane of the second half buffer
     return average([&](std::size_t c, std::size_t i) {
-      const ErrorEstimate estimate = estimateError(fitted[c][i], fitted[other + c][i],
-                                                   m_fit.color[c][i], m_fit.color[other + c][i]);
+      const ErrorEstimate estimate = estimateError(fitted[c][i], fitted[odd + c][i],
+                                                   m_fit.color[c][i], m_fit.color[odd + c][i]);
       return estimate.variance + estimate.bias;
     });
   }
@@ -246,11 +246,11 @@ FilteredImage filterImage(FilterInput input) {
   const FitInput fit = prepareInput(input, channels);
   const FittedPlanes chosen =
       input.hasHalfBuffers ? filterAdaptively(fit, input.variance) : fitWindows(fit, singleLevel);
-  const std::size_t other = input.hasHalfBuffers ? channels : 0;
+  const std::size_t odd = input.hasHalfBuffers ? channels : 0; // as in CandidateScorer::score
   for (std::size_t c = 0; c < channels; ++c)
     for (std::size_t i = 0; i < fit.active.size(); ++i)
       if (fit.active[i] > 0.0F)
-        image.color[c][i] = 0.5F * (chosen[c][i] + chosen[other + c][i]);
+        image.color[c][i] = 0.5F * (chosen[c][i] + chosen[odd + c][i]);
   if (input.hasHalfBuffers) {
     estimateErrors(fit, chosen, image);
     addInactiveErrors(input.variance, fit.active, image);

@@ -32,7 +32,8 @@ HWY_INLINE void forEachLane(Function&& function) {
 /// Computes a window's coefficients from its sums, multiplied by its pixel count, which weights the
 /// average over windows. Minimizes
 ///   sum over pixels of (c - a - b . (f - mean f))^2 + n ridge |b|^2
-/// by the normal equations, with an L D L^T factorization.
+/// over a and b, for color c, features f and n pixels, by the normal equations, with an L D L^T
+/// factorization.
 class LocalFit {
 public:
   explicit LocalFit(const SumLayout& layout) : m_layout(layout) {}
@@ -40,14 +41,14 @@ public:
   /// Order of `sums` and of `out`: SumLayout.
   HWY_INLINE void solve(const Lanes* sums, Lanes* out) {
     forEachLane([&](std::size_t l) {
-      m_count.v[l] = sums[0].v[l];
+      m_count.v[l] = sums[SumLayout::pixelCount].v[l];
       m_inverse.v[l] = m_count.v[l] > 0.0F ? 1.0F / m_count.v[l] : 0.0F;
-      m_ridge.v[l] = ridge * (1.0F + 40.0F * m_inverse.v[l]);
+      m_ridge.v[l] = ridge * (1.0F + 40.0F * m_inverse.v[l]); // stronger in small windows
     });
     factor(sums);
     for (std::size_t c = 0; c < m_layout.colors; ++c)
       fit(sums, c, out);
-    out[0] = m_count;
+    out[SumLayout::pixelCount] = m_count;
   }
 
 private:
@@ -59,10 +60,10 @@ private:
     for (std::size_t j = 0; j < count; ++j)
       for (std::size_t i = j; i < count; ++i) {
         const Lanes& product = sums[m_layout.product(j, i)];
-        const Lanes &meanI = sums[m_layout.feature(i)], &meanJ = sums[m_layout.feature(j)];
+        const Lanes &sumI = sums[m_layout.feature(i)], &sumJ = sums[m_layout.feature(j)];
         Lanes& t = m_scaled[i][j];
         forEachLane([&](std::size_t l) {
-          t.v[l] = (product.v[l] - meanI.v[l] * meanJ.v[l] * m_inverse.v[l]) * m_inverse.v[l];
+          t.v[l] = (product.v[l] - sumI.v[l] * sumJ.v[l] * m_inverse.v[l]) * m_inverse.v[l];
         });
         if (i == j)
           forEachLane([&](std::size_t l) { t.v[l] += m_ridge.v[l]; });
@@ -83,9 +84,9 @@ private:
     std::array<Lanes, maxFeatures> b;
     for (std::size_t i = 0; i < count; ++i) {
       const Lanes& product = sums[m_layout.featureColor(i, color)];
-      const Lanes& mean = sums[m_layout.feature(i)];
+      const Lanes& featureSum = sums[m_layout.feature(i)];
       forEachLane([&](std::size_t l) {
-        b[i].v[l] = (product.v[l] - mean.v[l] * sum.v[l] * m_inverse.v[l]) * m_inverse.v[l];
+        b[i].v[l] = (product.v[l] - featureSum.v[l] * sum.v[l] * m_inverse.v[l]) * m_inverse.v[l];
       });
       for (std::size_t q = 0; q < i; ++q)
         forEachLane([&](std::size_t l) { b[i].v[l] -= m_unit[i][q].v[l] * b[q].v[l]; });
@@ -95,8 +96,8 @@ private:
       forEachLane([&](std::size_t l) { b[i].v[l] *= m_pivot[i].v[l]; });
       for (std::size_t q = i + 1; q < count; ++q)
         forEachLane([&](std::size_t l) { b[i].v[l] -= m_unit[q][i].v[l] * b[q].v[l]; });
-      const Lanes& mean = sums[m_layout.feature(i)];
-      forEachLane([&](std::size_t l) { a.v[l] -= b[i].v[l] * mean.v[l]; });
+      const Lanes& featureSum = sums[m_layout.feature(i)];
+      forEachLane([&](std::size_t l) { a.v[l] -= b[i].v[l] * featureSum.v[l]; });
       forEachLane(
           [&](std::size_t l) { out[m_layout.slope(color, i)].v[l] = b[i].v[l] * m_count.v[l]; });
     }
@@ -104,7 +105,7 @@ private:
   }
 
   const SumLayout& m_layout;
-  Lanes m_count, m_inverse, m_ridge;
+  Lanes m_count, m_inverse, m_ridge;        ///< pixels; 1 / pixels
   Lanes m_scaled[maxFeatures][maxFeatures]; ///< L D, lower triangle
   Lanes m_unit[maxFeatures][maxFeatures];   ///< L
   Lanes m_pivot[maxFeatures];               ///< 1 / D

@@ -31,8 +31,8 @@ public:
   std::size_t planes() const { return m_planes; }
   std::size_t width() const { return m_width; }
 
-  /// Sums of all rows of a plane.
-  HWY_INLINE void sum(std::size_t plane, float* out) {
+  /// Sums of the rows of a window, per column.
+  HWY_INLINE void sumWindow(std::size_t plane, float* out) {
     static_assert(window == 5);
     const float *a = at(0, plane), *b = at(1, plane), *c = at(2, plane), *d = at(3, plane),
                 *e = at(4, plane);
@@ -47,38 +47,38 @@ private:
   std::vector<float> m_values;
 };
 
-/// Processes a tile of the image row by row: sums of cells, fits of windows, means of the fits.
+/// Processes a tile of the image row by row: sums of cells, fits of windows, sums of the fits.
 class TileFit {
 public:
-  static constexpr std::int64_t edge = tileColumns, rows = tileRows;
+  static constexpr std::int64_t columns = tileColumns, rows = tileRows;
 
   TileFit(const FitInput& input, int level, std::int64_t column, std::int64_t row,
           std::vector<Plane>& out)
       : m_input(input),
         m_layout{input.features.size(), input.color.size()},
         m_level(level),
-        m_cell(std::int64_t{1} << level),
+        m_cellSize(std::int64_t{1} << level),
         m_column(column),
         m_row(row),
         m_out(out),
         m_fit(m_layout),
         m_sums(RowRing::window, m_layout.sums(), width),
         m_fits(RowRing::window, m_layout.coefficients(), width),
-        m_means(2, m_layout.coefficients(), width),
+        m_fitSums(2, m_layout.coefficients(), width),
         m_rowSum(width),
         m_windowSums(m_layout.sums() * width),
         m_interpolated(m_layout.coefficients() * width) {}
 
   HWY_ATTR void run() {
-    // A mean needs fits of two more rows, and a fit needs sums of two more rows. Interpolation
-    // between cells needs one more row of means on each side.
+    // A sum of fits needs fits of two more rows, and a fit needs sums of two more rows.
+    // Interpolation between cells needs one more row of fit sums on each side.
     const std::int64_t first = m_row - 1, end = std::min(m_row + rows, cells(m_input.height)) + 1;
     for (std::int64_t row = first - 4; row < end + 4; ++row) {
       sumCells(row);
       if (row >= first)
         fitRow(row - 2);
       if (row >= first + 4)
-        averageRow(row - 4);
+        sumFits(row - 4);
       if (row >= first + 5)
         evaluateRows(row - 5);
     }
@@ -86,9 +86,10 @@ public:
 
 private:
   static constexpr std::int64_t margin = 5; ///< cells on each side that sums are needed for
-  static constexpr std::size_t width = 80;  ///< >= edge + 2 margin, padded for reads beyond
+  /// >= columns + 2 margin, rounded up; SIMD reads past the last cell
+  static constexpr std::size_t width = 80;
 
-  std::int64_t cells(int pixels) const { return (pixels + m_cell - 1) / m_cell; }
+  std::int64_t cells(int pixels) const { return (pixels + m_cellSize - 1) / m_cellSize; }
 
   // ---- sums over cells; index 0 of a row is cell m_column - margin
 
@@ -98,20 +99,20 @@ private:
     if (row < 0 || row >= cells(m_input.height))
       return;
     const std::int64_t firstCell = std::max<std::int64_t>(m_column - margin, 0);
-    const std::int64_t first = firstCell * m_cell;
+    const std::int64_t first = firstCell * m_cellSize;
     const std::int64_t end =
-        std::min<std::int64_t>((m_column + edge + margin) * m_cell, m_input.width);
+        std::min<std::int64_t>((m_column + columns + margin) * m_cellSize, m_input.width);
     const auto at = static_cast<std::size_t>(firstCell - (m_column - margin));
-    const std::int64_t lastRow = std::min<std::int64_t>((row + 1) * m_cell, m_input.height);
+    const std::int64_t lastRow = std::min<std::int64_t>((row + 1) * m_cellSize, m_input.height);
     const auto add = [&](std::size_t plane, const Plane& a, const Plane& b) {
       m_products.assign(static_cast<std::size_t>(end - first), 0.0F);
-      for (std::int64_t y = row * m_cell; y < lastRow; ++y) {
+      for (std::int64_t y = row * m_cellSize; y < lastRow; ++y) {
         const std::int64_t start = y * m_input.width + first;
         addProducts(a.data() + start, b.data() + start);
       }
       pool(m_sums.at(row, plane) + at);
     };
-    add(0, m_input.active, m_input.active);
+    add(SumLayout::pixelCount, m_input.active, m_input.active);
     for (std::size_t i = 0; i < m_layout.features; ++i) {
       add(m_layout.feature(i), m_input.features[i], m_input.active);
       for (std::size_t j = i; j < m_layout.features; ++j)
@@ -131,7 +132,7 @@ private:
   HWY_INLINE void pool(float* out) {
     const float* in = m_products.data();
     const std::size_t count = m_products.size();
-    if (m_cell == 1) {
+    if (m_cellSize == 1) {
       std::copy_n(in, count, out);
       return;
     }
@@ -139,11 +140,11 @@ private:
       out[x >> m_level] += in[x];
   }
 
-  // ---- fits of windows; index 0 of a row is the window around cell m_column - margin + 2
+  // ---- fits, 16 windows at once; index 0 of a row is the window around cell m_column - margin + 2
 
   HWY_INLINE void fitRow(std::int64_t row) {
     for (std::size_t plane = 0; plane < m_sums.planes(); ++plane)
-      m_sums.sum(plane, &m_windowSums[plane * width]);
+      m_sums.sumWindow(plane, &m_windowSums[plane * width]);
     m_blockSums.resize(m_layout.sums());
     m_blockFits.resize(m_layout.coefficients());
     for (std::size_t x = 0; x + lanes + 4 <= width; x += lanes) {
@@ -154,7 +155,7 @@ private:
         forEachLane([&](std::size_t l) {
           out.v[l] = ((in[l] + in[l + 1]) + (in[l + 2] + in[l + 3])) + in[l + 4];
         });
-        if (plane == 0)
+        if (plane == SumLayout::pixelCount)
           for (const float count : out.v)
             pixels += count;
         if (pixels == 0.0F)
@@ -169,13 +170,13 @@ private:
     }
   }
 
-  // ---- means of fits; index 0 of a row is cell m_column - 1
+  // ---- sums of the fits of all windows that contain a cell; index 0 of a row is cell m_column - 1
 
-  HWY_INLINE void averageRow(std::int64_t row) {
+  HWY_INLINE void sumFits(std::int64_t row) {
     for (std::size_t plane = 0; plane < m_fits.planes(); ++plane) {
-      m_fits.sum(plane, m_rowSum.data());
+      m_fits.sumWindow(plane, m_rowSum.data());
       const float* in = m_rowSum.data();
-      float* out = m_means.at(row, plane);
+      float* out = m_fitSums.at(row, plane);
       for (std::size_t x = 0; x + 4 < width; ++x)
         out[x] = ((in[x] + in[x + 1]) + (in[x + 2] + in[x + 3])) + in[x + 4];
     }
@@ -183,52 +184,55 @@ private:
 
   // ---- pixels
 
-  /// Evaluates the pixels whose centers lie between those of cell rows `row` and `row` + 1, or the
-  /// pixels of `row` if cells are single pixels.
+  /// Evaluates the pixels between the centers of cell rows `row` and `row` + 1, or the pixels of
+  /// `row` if cells are single pixels.
   HWY_INLINE void evaluateRows(std::int64_t row) {
-    const std::int64_t begin = row * m_cell + m_cell / 2;
-    const std::int64_t end = std::min(
-        {begin + m_cell, (m_row + rows) * m_cell, static_cast<std::int64_t>(m_input.height)});
-    for (std::int64_t y = std::max(begin, m_row * m_cell); y < end; ++y) {
-      const double cellRow = (static_cast<double>(y) + 0.5) / static_cast<double>(m_cell) - 0.5;
+    const std::int64_t begin = row * m_cellSize + m_cellSize / 2;
+    const std::int64_t end = std::min({begin + m_cellSize, (m_row + rows) * m_cellSize,
+                                       static_cast<std::int64_t>(m_input.height)});
+    for (std::int64_t y = std::max(begin, m_row * m_cellSize); y < end; ++y) {
+      const double cellRow = (static_cast<double>(y) + 0.5) / static_cast<double>(m_cellSize) - 0.5;
       evaluate(y, row, static_cast<float>(cellRow - static_cast<double>(row)));
     }
   }
 
   HWY_INLINE void evaluate(std::int64_t y, std::int64_t row, float rowFraction) {
-    for (std::size_t plane = 0; plane < m_means.planes(); ++plane) {
-      const float *upper = m_means.at(row, plane), *lower = m_means.at(row + 1, plane);
+    for (std::size_t plane = 0; plane < m_fitSums.planes(); ++plane) {
+      const float *upper = m_fitSums.at(row, plane), *lower = m_fitSums.at(row + 1, plane);
       float* interpolated = &m_interpolated[plane * width];
       for (std::size_t x = 0; x < width; ++x)
         interpolated[x] = upper[x] + rowFraction * (lower[x] - upper[x]);
     }
-    const std::int64_t first = m_column * m_cell;
-    const std::int64_t end = std::min<std::int64_t>((m_column + edge) * m_cell, m_input.width);
-    for (std::int64_t phase = 0; phase < m_cell; ++phase) {
-      // Every m_cell-th pixel has the same position between the centers of two cells.
-      const std::int64_t before = m_cell > 1 && phase < m_cell / 2 ? 1 : 0;
-      const std::int64_t x = first + before * m_cell + phase - m_cell / 2;
+    const std::int64_t first = m_column * m_cellSize;
+    const std::int64_t end =
+        std::min<std::int64_t>((m_column + columns) * m_cellSize, m_input.width);
+    for (std::int64_t phase = 0; phase < m_cellSize; ++phase) {
+      // With s = m_cellSize, pixel first - s / 2 + phase + k s lies at fraction (phase + 0.5) / s
+      // between the centers of cells m_column - 1 + k and m_column + k. k = 0 may precede the tile.
+      const std::int64_t firstK = m_cellSize > 1 && phase < m_cellSize / 2 ? 1 : 0;
+      const std::int64_t x = first + firstK * m_cellSize + phase - m_cellSize / 2;
       if (x >= end)
         continue;
-      m_count = static_cast<std::size_t>((end - x + m_cell - 1) / m_cell);
+      m_count = static_cast<std::size_t>((end - x + m_cellSize - 1) / m_cellSize);
       // If cells are single pixels, the pixel is at the center of the next cell.
-      const std::int64_t cell = m_cell > 1 ? before : 1;
+      const std::int64_t cell = m_cellSize > 1 ? firstK : 1;
       const float columnFraction =
-          m_cell > 1 ? (static_cast<float>(phase) + 0.5F) / static_cast<float>(m_cell) : 0.0F;
+          m_cellSize > 1 ? (static_cast<float>(phase) + 0.5F) / static_cast<float>(m_cellSize)
+                         : 0.0F;
       evaluateStrided(static_cast<std::size_t>(y * m_input.width + x),
                       static_cast<std::size_t>(cell), columnFraction);
     }
   }
 
-  /// Evaluates every m_cell-th pixel from `start`. The first lies between indices `cell` and
-  /// `cell` + 1 of the means, at fraction `columnFraction`.
+  /// Evaluates every m_cellSize-th pixel from `start`. The first lies between indices `cell` and
+  /// `cell` + 1 of the fit sums, at fraction `columnFraction`.
   HWY_INLINE void evaluateStrided(std::size_t start, std::size_t cell, float columnFraction) {
-    const auto step = static_cast<std::size_t>(m_cell);
+    const auto step = static_cast<std::size_t>(m_cellSize);
     for (std::size_t i = 0; i < m_layout.features; ++i)
       for (std::size_t x = 0; x < m_count; ++x)
         m_features[i][x] = m_input.features[i][start + x * step];
-    std::array<float, edge + 1> weights, pixels;
-    interpolate(0, cell, columnFraction, weights);
+    std::array<float, columns + 1> weights, pixels;
+    interpolate(SumLayout::pixelCount, cell, columnFraction, weights);
     for (std::size_t c = 0; c < m_layout.colors; ++c) {
       interpolate(m_layout.intercept(c), cell, columnFraction, pixels);
       for (std::size_t i = 0; i < m_layout.features; ++i) {
@@ -246,7 +250,7 @@ private:
   }
 
   HWY_INLINE void interpolate(std::size_t plane, std::size_t cell, float columnFraction,
-                              std::array<float, edge + 1>& out) const {
+                              std::array<float, columns + 1>& out) const {
     const float* in = &m_interpolated[plane * width + cell];
     for (std::size_t x = 0; x < m_count; ++x)
       out[x] = in[x] + columnFraction * (in[x + 1] - in[x]);
@@ -255,13 +259,13 @@ private:
   const FitInput& m_input;
   SumLayout m_layout;
   int m_level;
-  std::int64_t m_cell; ///< pixels along an edge of a cell
+  std::int64_t m_cellSize; ///< pixels along an edge of a cell
   std::int64_t m_column, m_row;
   std::vector<Plane>& m_out;
   LocalFit m_fit;
-  RowRing m_sums, m_fits, m_means;
+  RowRing m_sums, m_fits, m_fitSums;
   std::vector<float> m_rowSum, m_windowSums, m_products, m_interpolated;
-  std::array<std::array<float, edge + 1>, SumLayout::maxFeatures> m_features;
+  std::array<std::array<float, columns + 1>, SumLayout::maxFeatures> m_features;
   std::size_t m_count = 0; ///< pixels that are evaluated together
   std::vector<Lanes> m_blockSums, m_blockFits;
 };

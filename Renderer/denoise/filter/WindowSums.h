@@ -10,8 +10,9 @@ struct SumLayout {
   std::size_t features; ///< k
   std::size_t colors;   ///< m
 
-  /// Sums of 1, of each feature, of the products of two features, of each color, and of the
-  /// products of a feature and a color.
+  static constexpr std::size_t pixelCount = 0; ///< index in both the sums and the coefficients
+  /// Sums of 1 (the pixel count), of each feature, of the products of two features, of each color,
+  /// and of the products of a feature and a color.
   std::size_t sums() const { return featureColor(features, 0); }
   std::size_t feature(std::size_t i) const { return 1 + i; }
   /// For i <= j.

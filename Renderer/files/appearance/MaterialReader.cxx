@@ -60,7 +60,8 @@ void readKind(const JsonNode& object, Material& material) {
                       "use \"matter\"");
 }
 
-/// Sets the members of a material that the object gives.
+/// Sets the members of a material that the object gives. "border" is the file's name of
+/// Material::interfaceWeight.
 void readMaterial(const JsonNode& object, Material& material) {
   ColorKind color = findColorKind(object);
   if (color == ColorKind::reflectance)

@@ -19,17 +19,18 @@ std::string readPatternString(const JsonNode& node) {
 
 /// Backtracks only to the last *, so time is at most the product of both lengths.
 bool matchesGlob(std::string_view glob, std::string_view word) {
-  std::size_t g = 0, w = 0, star = std::string_view::npos, from = 0;
+  std::size_t g = 0, w = 0;                               // positions in glob and word
+  std::size_t star = std::string_view::npos, starEnd = 0; // last *, and where its text in word ends
   while (w < word.size()) {
     if (g < glob.size() && glob[g] == '*') {
       star = g++;
-      from = w;
+      starEnd = w;
     } else if (g < glob.size() && (glob[g] == '?' || glob[g] == word[w])) {
       ++g;
       ++w;
     } else if (star != std::string_view::npos) {
       g = star + 1;
-      w = ++from;
+      w = ++starEnd;
     } else {
       return false;
     }
@@ -48,6 +49,7 @@ std::vector<std::string> readPatternStrings(const JsonNode& parent, const std::s
 }
 
 std::string readCode(const JsonNode& node) {
+  // SCHEME^VALUE of a type, and of a region if ~ follows
   static const std::regex pattern(R"([^^~]+\^[^^~]+(~[^^]+\^[^^~]+)?)");
   std::string code = readPatternString(node);
   if (!std::regex_match(code, pattern))

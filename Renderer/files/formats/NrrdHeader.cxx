@@ -12,7 +12,8 @@ using namespace header;
 
 namespace {
 
-/// Maximum number of lines, including a list of files: teem compares each key with all others.
+/// Maximum number of lines, including a list of files: teem, ITK's NRRD library, compares each key
+/// with all others.
 constexpr int maxLines = 10'000;
 /// Maximum length of a line and of a path, bytes: teem may copy them into a message of 1024.
 constexpr std::size_t maxLineBytes = 500, maxPathBytes = 900;
@@ -86,7 +87,7 @@ void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields) {
 /// Checks each unit of the field `name`, a text in quotes.
 void checkNrrdUnits(const std::filesystem::path& path, const Fields& fields, const char* name) {
   const std::vector<std::string> parts = split(findValue(fields, toKey(name)), '"');
-  for (std::size_t i = 1; i < parts.size(); i += 2)
+  for (std::size_t i = 1; i < parts.size(); i += 2) // odd parts are within quotes
     checkMillimeters(path, name, parts[i]);
 }
 

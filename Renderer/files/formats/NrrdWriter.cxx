@@ -17,12 +17,13 @@ static_assert(std::endian::native == std::endian::little, "samples are written i
 /// "(x,y,z)" in LPS, whose first two axes are negated RAS; "+ 0.0" avoids "-0" in the header.
 std::string formatLps(const Vec3& ras) {
   const Vec3 lps(-ras.x() + 0.0, -ras.y() + 0.0, ras.z() + 0.0);
-  return '(' + joinNumbers(lps, ",", 17) + ')';
+  constexpr int exact = 17; // significant digits
+  return '(' + joinNumbers(lps, ",", exact) + ')';
 }
 
 /// Appends `samples` as one gzip stream without name and time.
 void appendGzip(std::string_view samples, std::string& file) {
-  constexpr int level = 6, gzipWindow = 15 + 16, memory = 8;
+  constexpr int level = 6, gzipWindow = 15 + 16, memory = 8; // + 16: gzip header
   z_stream stream = {};
   if (deflateInit2(&stream, level, Z_DEFLATED, gzipWindow, memory, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::bad_alloc();

@@ -38,13 +38,13 @@ public:
         blend(left + x, top + y, toLinear(color), 1.0F);
   }
   /// Draws left-aligned text; text wider than `width` pixels ends in an ellipsis.
-  void drawText(int left, int top, const std::string& text, double dot, std::uint32_t color,
+  void drawText(int left, int top, const std::string& text, double dotSize, std::uint32_t color,
                 int width) {
-    const auto maxLength = static_cast<std::size_t>(std::max(4.0, width / (glyphWidth * dot)));
+    const auto maxLength = static_cast<std::size_t>(std::max(4.0, width / (glyphWidth * dotSize)));
     std::string visible = toAscii(text);
     if (visible.size() > maxLength)
       visible = visible.substr(0, maxLength - 3) + "...";
-    const TextBitmap line = rasterizeText(visible, dot);
+    const TextBitmap line = rasterizeText(visible, dotSize);
     auto coverage = line.coverage.begin();
     for (int y = 0; y < line.height; ++y)
       for (int x = 0; x < line.width; ++x)
@@ -64,7 +64,7 @@ public:
       value += coverage * (static_cast<float>(color[static_cast<int>(c)]) - value);
     }
   }
-  Image image() && {
+  Image takeImage() && {
     Image image{m_width, m_height, {}, {}};
     for (std::size_t c = 0; c < m_planes.size(); ++c)
       image.channels[std::string(1, "RGB"[c])] = std::move(m_planes[c]);
@@ -96,8 +96,8 @@ Canvas scaleToBox(const Image& image) {
   Canvas canvas(scaled(image.width), scaled(image.height), panelColor);
   const Plane* const alpha = image.find("A");
   const std::array<const Plane*, 3> planes = {image.find("R"), image.find("G"), image.find("B")};
-  const auto toSource = [](int at, int size, int all) {
-    return static_cast<int>(std::int64_t{at} * all / size);
+  const auto toSource = [](int at, int size, int sourceSize) {
+    return static_cast<int>(std::int64_t{at} * sourceSize / size);
   };
   for (int y = 0; y < canvas.height(); ++y)
     for (int x = 0; x < canvas.width(); ++x) {
@@ -116,9 +116,9 @@ Canvas scaleToBox(const Image& image) {
           sum += weight * decodeSrgb(Rgb((*planes[0])[i], (*planes[1])[i], (*planes[2])[i]));
           alphaSum += weight;
         }
-      const double all = 1.0 * (bottom - top) * (right - left);
+      const double area = 1.0 * (bottom - top) * (right - left); // source pixels
       if (alphaSum > 0.0)
-        canvas.blend(x, y, sum / alphaSum, static_cast<float>(alphaSum / all));
+        canvas.blend(x, y, sum / alphaSum, static_cast<float>(alphaSum / area));
     }
   return canvas;
 }
@@ -146,8 +146,8 @@ Thumbnail makeThumbnail(const SheetEntry& entry) {
 int chooseColumns(int count) {
   const int wide = std::max(1, static_cast<int>(std::ceil(std::sqrt(1.4 * count))));
   const int narrow = std::max(1, wide - 1);
-  const auto empty = [count](int columns) { return (columns - count % columns) % columns; };
-  return empty(narrow) < empty(wide) ? narrow : wide;
+  const auto countEmpty = [count](int columns) { return (columns - count % columns) % columns; };
+  return countEmpty(narrow) < countEmpty(wide) ? narrow : wide;
 }
 
 /// Draws an entry into its cell.
@@ -159,9 +159,10 @@ void drawEntry(Canvas& sheet, int left, int top, int boxHeight, const Thumbnail&
     sheet.drawImage(left + (boxWidth - image->width()) / 2, top + (boxHeight - image->height()) / 2,
                     *image);
   int line = top + margin;
-  const auto fits = static_cast<std::size_t>((boxWidth - 2 * margin) / (glyphWidth * textDotSize));
+  const auto lineLength =
+      static_cast<std::size_t>((boxWidth - 2 * margin) / (glyphWidth * textDotSize));
   if (!thumbnail.problem.empty())
-    for (const std::string& text : split(wrapLines(thumbnail.problem, fits), '\n')) {
+    for (const std::string& text : split(wrapLines(thumbnail.problem, lineLength), '\n')) {
       if (line + textLine > top + boxHeight)
         break;
       sheet.drawText(left + margin, line, text, textDotSize, errorColor, boxWidth - 2 * margin);
@@ -207,7 +208,7 @@ Image makeContactSheet(const std::string& title, const std::string& subtitle,
   for (int i = 0; i < count; ++i)
     drawEntry(sheet, gap + i % columns * cellWidth, headerHeight + i / columns * cellHeight,
               boxHeight, thumbnails[static_cast<std::size_t>(i)]);
-  return std::move(sheet).image();
+  return std::move(sheet).takeImage();
 }
 
 } // namespace fenestra

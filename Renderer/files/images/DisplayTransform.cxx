@@ -48,7 +48,7 @@ ocio::ConstCPUProcessorRcPtr makeProcessor(DisplayView view) {
 }
 
 /// Clamps to [0, maxValue]; NaN becomes 0.
-float sanitize(float value, float maxValue) {
+float clampOrZero(float value, float maxValue) {
   return value > 0.0f ? std::min(value, maxValue) : 0.0f;
 }
 
@@ -72,9 +72,9 @@ std::vector<float> toDisplay(std::vector<float> rgba, const Display& display) {
   const bool isExposed = display.view != DisplayView::standard;
   const auto gain = static_cast<float>(isExposed ? std::exp2(display.exposure) : 1.0);
   for (std::size_t i = 0; i < rgba.size(); i += 4) {
-    const float alpha = rgba[i + 3] = sanitize(rgba[i + 3], 1.0f);
+    const float alpha = rgba[i + 3] = clampOrZero(rgba[i + 3], 1.0f);
     for (std::size_t c = i; c < i + 3; ++c)
-      rgba[c] = alpha > 0.0f ? sanitize(rgba[c] / alpha * gain, maxRadiance) : 0.0f;
+      rgba[c] = alpha > 0.0f ? clampOrZero(rgba[c] / alpha * gain, maxRadiance) : 0.0f;
   }
   constexpr std::ptrdiff_t pixel = 4 * sizeof(float); // the stride skips alpha
   ocio::PackedImageDesc colors(rgba.data(), static_cast<long>(rgba.size() / 4), 1, 3,

@@ -183,7 +183,7 @@ Image readExr(const std::filesystem::path& path) {
 // ---- PNG, TIFF, NRRD
 
 /// Channel names for a number of components. An empty name means gray, an empty list unsupported.
-std::vector<std::string> channelNames(ImageFormat format, unsigned components) {
+std::vector<std::string> chooseChannelNames(ImageFormat format, unsigned components) {
   if (components == 3)
     return {"R", "G", "B"};
   if (components == 4)
@@ -227,11 +227,11 @@ Image readPng(const std::filesystem::path& path) {
   std::vector<char> bytes(PNG_IMAGE_SIZE(png));
   if (!png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr))
     throw std::runtime_error(png.message);
-  return deinterleave<std::uint8_t>(bytes, channelNames(ImageFormat::png, hasAlpha ? 4 : 3),
+  return deinterleave<std::uint8_t>(bytes, chooseChannelNames(ImageFormat::png, hasAlpha ? 4 : 3),
                                     png.width, png.height);
 }
 
-std::uint32_t tiffField(TIFF* tiff, std::uint32_t tag) {
+std::uint32_t readTiffField(TIFF* tiff, std::uint32_t tag) {
   std::uint16_t value = 0;
   TIFFGetFieldDefaulted(tiff, tag, &value);
   return value;
@@ -239,17 +239,17 @@ std::uint32_t tiffField(TIFF* tiff, std::uint32_t tag) {
 
 /// Throws Error (input) unless the file has rows of interleaved unsigned samples, gray or RGB.
 void checkTiff(const std::filesystem::path& path, TIFF* tiff) {
-  const auto bits = tiffField(tiff, TIFFTAG_BITSPERSAMPLE);
-  const auto samples = tiffField(tiff, TIFFTAG_SAMPLESPERPIXEL);
-  const auto photometric = tiffField(tiff, TIFFTAG_PHOTOMETRIC);
+  const auto bits = readTiffField(tiff, TIFFTAG_BITSPERSAMPLE);
+  const auto samples = readTiffField(tiff, TIFFTAG_SAMPLESPERPIXEL);
+  const auto photometric = readTiffField(tiff, TIFFTAG_PHOTOMETRIC);
   const bool isSupported =
       (bits == 8 || bits == 16) &&
       photometric == (samples < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB) &&
-      tiffField(tiff, TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_UINT;
+      readTiffField(tiff, TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_UINT;
   if (!isSupported || samples < 1 || samples > 4 || TIFFIsTiled(tiff) ||
-      tiffField(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)
+      readTiffField(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)
     throw inputError(path, "is not 8- or 16-bit gray or RGB in interleaved rows; convert it");
-  if (const auto orientation = tiffField(tiff, TIFFTAG_ORIENTATION);
+  if (const auto orientation = readTiffField(tiff, TIFFTAG_ORIENTATION);
       orientation != ORIENTATION_TOPLEFT)
     throw inputError(path, "Orientation: is ", orientation,
                      ", so the image is rotated or mirrored; save it upright");
@@ -276,13 +276,13 @@ Image readTiff(const std::filesystem::path& path) {
   std::uint32_t width = 0, height = 0;
   TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &width);
   TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height);
-  const auto samples = tiffField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
-  const bool is16Bit = tiffField(tiff.get(), TIFFTAG_BITSPERSAMPLE) == 16;
+  const auto samples = readTiffField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
+  const bool is16Bit = readTiffField(tiff.get(), TIFFTAG_BITSPERSAMPLE) == 16;
   checkSize(path, width, height, samples < 3 ? samples + 2 : samples); // gray becomes R, G, B
   const auto bytes =
       readTiffRows(tiff.get(), std::size_t{width} * samples * (is16Bit ? 2 : 1), height);
   const auto unpack = is16Bit ? deinterleave<std::uint16_t> : deinterleave<std::uint8_t>;
-  return unpack(bytes, channelNames(ImageFormat::tiff, samples), width, height);
+  return unpack(bytes, chooseChannelNames(ImageFormat::tiff, samples), width, height);
 }
 
 /// True if every axis beyond the second has size 1.
@@ -299,7 +299,7 @@ Image readNrrd(const std::filesystem::path& path) {
   const auto io = itk::NrrdImageIO::New();
   io->SetFileName(path.string());
   io->ReadImageInformation();
-  const auto names = channelNames(ImageFormat::nrrd, io->GetNumberOfComponents());
+  const auto names = chooseChannelNames(ImageFormat::nrrd, io->GetNumberOfComponents());
   if (!isSingleImage(*io) || names.empty() || io->GetComponentType() != itk::IOComponentEnum::FLOAT)
     throw inputError(path, "is not one slice of 1, 3 or 4 floats per pixel; extract one");
   const std::size_t width = io->GetDimensions(0), height = io->GetDimensions(1);

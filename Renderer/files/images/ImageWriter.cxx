@@ -44,6 +44,7 @@ std::string encodeExr(const Image& image) {
   Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
   for (const auto& [key, value] : image.header)
     header.insert("fenestra." + key, Imf::StringAttribute(value));
+  // sealProvenanceTag replaces the blank tag by one with a checksum.
   header.insert("software", Imf::StringAttribute(std::string(blankProvenanceTag)));
   Imf::FrameBuffer frame;
   for (const auto& [name, plane] : image.channels) {
@@ -98,7 +99,8 @@ std::string makeTextChunk(const std::string& keyword, std::string_view text) {
          toBigEndian(0);
 }
 
-/// Sets the checksum of the chunk of `size` bytes at `start`.
+/// Sets the checksum of the chunk of `size` bytes at `start`. A chunk is 4 bytes of length, type
+/// and data, which the checksum covers, and 4 bytes of checksum.
 void setChecksum(std::string& png, std::size_t start, std::size_t size) {
   const auto* const bytes = reinterpret_cast<const Bytef*>(png.data()) + start + 4;
   const uLong checksum = crc32(crc32(0, nullptr, 0), bytes, static_cast<uInt>(size - 8));
@@ -186,7 +188,7 @@ std::string encodeTiff(const Image& image, const std::vector<float>& rgba,
 
 /// Index-to-world transform of the slice; its thickness equals the pixel width. It is right-handed,
 /// so that Slicer need not flip it.
-Affine sliceToWorld(const ImagePlane& plane) {
+Affine makeSliceToWorld(const ImagePlane& plane) {
   const Vec3 normal = plane.columnStep.cross(plane.rowStep).normalized();
   return Affine({plane.columnStep, plane.rowStep, normal * plane.columnStep.norm()}, plane.topLeft);
 }
@@ -199,7 +201,7 @@ std::string encodeSlice(const Image& image, const ImagePlane& plane,
                           .leadingKind = components > 1 ? "vector" : "",
                           .leadingCount = components,
                           .size = {image.width, image.height, 1},
-                          .indexToWorld = sliceToWorld(plane),
+                          .indexToWorld = makeSliceToWorld(plane),
                           .encoding = NrrdHeader::Encoding::raw,
                           .fields = {{"Software", std::string(blankProvenanceTag)}}};
   return sealProvenanceTag(encodeNrrd(header, asBytes(values)));
@@ -217,7 +219,7 @@ std::vector<float> interleaveRgba(const Image& image, const std::string& prefix 
 }
 
 /// Path of an extra file beside a `.nrrd`.
-std::filesystem::path siblingPath(const std::filesystem::path& path, const char* part) {
+std::filesystem::path makeSiblingPath(const std::filesystem::path& path, const char* part) {
   return path.parent_path() / (path.stem().string() + "-" + part + ".nrrd");
 }
 
@@ -225,6 +227,7 @@ std::filesystem::path siblingPath(const std::filesystem::path& path, const char*
 std::vector<std::string> readGridLines(const std::filesystem::path& path) {
   std::vector<std::string> lines;
   ThrowingStream<std::ifstream> file(path, std::ios::binary);
+  // "none" is the axis of the color components, which the depth lacks.
   for (std::string line; std::getline(file, line) && !line.empty() && lines.size() < 3;)
     for (const char* field : {"space: ", "space directions: ", "space origin: "})
       if (line.starts_with(field))
@@ -262,9 +265,9 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
   if (format == ImageFormat::nrrd) {
     outputs.write(path, encodeSlice(image, plane, interleaveRgba(image)));
     if (const std::vector<float>* depth = image.find("Z"))
-      outputs.write(siblingPath(path, "Z"), encodeSlice(image, plane, *depth));
+      outputs.write(makeSiblingPath(path, "Z"), encodeSlice(image, plane, *depth));
     if (image.find("denoised.R"))
-      outputs.write(siblingPath(path, "denoised"),
+      outputs.write(makeSiblingPath(path, "denoised"),
                     encodeSlice(image, plane, interleaveRgba(image, "denoised.")));
     return;
   }
@@ -276,7 +279,7 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
 
 std::vector<std::filesystem::path> listImageFiles(const std::filesystem::path& path) {
   if (requireFormat(path) == ImageFormat::nrrd)
-    return {path, siblingPath(path, "Z"), siblingPath(path, "denoised")};
+    return {path, makeSiblingPath(path, "Z"), makeSiblingPath(path, "denoised")};
   return {path};
 }
 
@@ -286,13 +289,13 @@ void declareImage(const std::filesystem::path& path, Outputs& outputs, NameOrigi
   if (origin == NameOrigin::user)
     outputs.add(path);
   else
-    outputs.add(path, hasProvenanceTag);
+    outputs.add(path, hasProvenanceTag); // replaces only a file for which this is true
   if (format != ImageFormat::nrrd)
     return;
-  outputs.add(siblingPath(path, "Z"),
+  outputs.add(makeSiblingPath(path, "Z"),
               [path](const auto& depth) { return isFenestraDepth(depth, path); });
   if (hasDenoised == HasDenoised::yes)
-    outputs.add(siblingPath(path, "denoised"), hasProvenanceTag);
+    outputs.add(makeSiblingPath(path, "denoised"), hasProvenanceTag);
 }
 
 } // namespace fenestra

@@ -21,7 +21,7 @@ using Path = std::filesystem::path;
 using gdcm::Tag;
 
 constexpr std::uint64_t maxHeaderBytes = 1 << 20;
-constexpr std::string_view padding(" \0", 2);
+constexpr std::string_view padding(" \0", 2); ///< of values, to an even length
 
 // ---- header fields, in the order in which the child sends them
 
@@ -149,7 +149,8 @@ const SandboxJob dicomJob("dicom", handleDicomRequest);
 // ---- voxels
 
 /// Extracts the stored bits of a voxel, sign-extended if signed.
-std::int64_t storedValue(const DicomHeader& h, const std::string& voxels, std::size_t voxel) {
+std::int64_t extractStoredValue(const DicomHeader& h, const std::string& voxels,
+                                std::size_t voxel) {
   const std::size_t size = h.bits / 8;
   std::uint64_t bits = 0;
   for (std::size_t byte = size; byte-- > 0;)
@@ -227,7 +228,7 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
 std::vector<double> rescaleVoxels(const DicomHeader& h, const std::string& voxels) {
   std::vector<double> scalars(std::size_t{h.rows} * h.columns);
   for (std::size_t i = 0; i < scalars.size(); ++i)
-    scalars[i] = h.slope * static_cast<double>(storedValue(h, voxels, i)) + h.intercept;
+    scalars[i] = h.slope * static_cast<double>(extractStoredValue(h, voxels, i)) + h.intercept;
   return scalars;
 }
 

@@ -55,7 +55,8 @@ std::string describeSeries(const DicomSeries& series) {
 }
 
 std::string formatSeries(const std::vector<DicomSeries>& series) {
-  return join(series, "; ", describeSeries, 40);
+  constexpr std::size_t maxListed = 40;
+  return join(series, "; ", describeSeries, maxListed);
 }
 
 } // namespace

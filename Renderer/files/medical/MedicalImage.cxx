@@ -87,7 +87,7 @@ Grid readGrid(const std::filesystem::path& path, const itk::ImageIOBase& io, Com
 }
 
 /// Number of samples; UINT64_MAX: overflow.
-std::uint64_t sampleCount(const itk::ImageIOBase& io) {
+std::uint64_t countSamples(const itk::ImageIOBase& io) {
   std::uint64_t samples = io.GetNumberOfComponents();
   for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
     if (__builtin_mul_overflow(samples, io.GetDimensions(axis), &samples))
@@ -127,7 +127,7 @@ std::function<void(void*, std::size_t)> readThroughItk(itk::ImageIOBase& io, std
 /// Source of the file's samples. Throws Error (input) if it declares more than it can hold.
 SampleSource makeSampleSource(const std::filesystem::path& path, const StoredSamples& stored,
                               itk::ImageIOBase& io) {
-  SampleSource source{.type = findSampleType(path, io), .count = sampleCount(io)};
+  SampleSource source{.type = findSampleType(path, io), .count = countSamples(io)};
   const std::size_t sampleBytes = bytesPerSample(source.type);
   const std::uint64_t declared = checkDeclaredBytes(path, stored, source.count, sampleBytes);
   // ITK interleaves the components of a voxel if they are stored apart.

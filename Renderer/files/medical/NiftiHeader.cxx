@@ -41,6 +41,7 @@ public:
   }
 
   bool isSwapped() const { return m_swapped; }
+  /// True if the header and the samples are in one file.
   bool isOnePart() const { return std::memcmp(&m_bytes[344], "n+1", 4) == 0; }
   const std::filesystem::path& path() const { return m_path; }
 
@@ -133,20 +134,21 @@ Affine readQform(const NiftiFields& fields, const Vec3& pixdim) {
       Vec3(a * a + b * b - c * c - d * d, 2.0 * (b * c + a * d), 2.0 * (b * d - a * c)),
       Vec3(2.0 * (b * c - a * d), a * a + c * c - b * b - d * d, 2.0 * (c * d + a * b)),
       Vec3(2.0 * (b * d + a * c), 2.0 * (c * d - a * b), a * a + d * d - b * b - c * c));
-  const double handedness = fields.real(76) < 0.0 ? -1.0 : 1.0;
+  const double handedness = fields.real(76) < 0.0 ? -1.0 : 1.0; // qfac
   return Affine(rotation * Mat3::Diagonal({pixdim[0], pixdim[1], handedness * pixdim[2]}),
                 fields.triple(268));
 }
 
 /// Millimeters per unit of length of the header.
 double readUnitMm(const NiftiFields& fields) {
-  const int code = fields.number<char>(123) & 7;
+  const int code = fields.number<char>(123) & 7; // xyzt_units: m, mm, µm
   return code == 1 ? 1000.0 : code == 3 ? 0.001 : 1.0;
 }
 
 Affine readNiftiGeometry(const NiftiFields& fields, std::vector<std::string>& warnings) {
   const auto qform = fields.number<std::int16_t>(252), sform = fields.number<std::int16_t>(254);
   const bool usesSform = sform > 0 && (sform == 1 || qform <= 0);
+  // pixdim, quaternion and offset, rows of the sform
   if (!fields.hasFiniteNumbers(76, 4) || (qform > 0 && !fields.hasFiniteNumbers(256, 6)) ||
       (sform > 0 && !fields.hasFiniteNumbers(280, 12)))
     throw inputError(fields.path(), "qform, sform or pixdim: has a number that is not finite or "

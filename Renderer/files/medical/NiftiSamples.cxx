@@ -71,6 +71,7 @@ std::string readNiftiExtensions(const std::filesystem::path& path, const NiftiHe
   NiftiStream stream(path);
   stream.seek(begin);
   stream.read(text.data(), text.size());
+  // The first of four bytes states whether there are extensions.
   return text.size() > 4 && text[0] != 0 ? text.substr(4) : std::string();
 }
 

@@ -67,7 +67,7 @@ FoundNames readRequestedNames(const std::filesystem::path& path, const std::stri
     throw usageError("--labels ", sanitize(requested),
                      ": is neither a file nor a built-in table; give a file, totalsegmentator, ",
                      join(listBuiltInLabelTables(), ", "));
-  const InputConfinement anywhere(std::nullopt);
+  const InputConfinement anywhere(std::nullopt); // the user named the file: not only in an archive
   return {readLabelNames(requested), requested};
 }
 
@@ -107,11 +107,12 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
       return {*inFile, path.string()};
     return readSiblingNames(path, values);
   }
+  constexpr std::size_t maxListed = 8;
   FoundNames found = readRequestedNames(path, extensions, *requested);
   if (!values.empty() && countNamed(found.names, values) == 0)
     throw inputError(path, "--labels ", sanitize(*requested), " names none of the label values (",
                      join(
-                         values, ", ", [](std::int32_t value) { return concat(value); }, 8),
+                         values, ", ", [](std::int32_t value) { return concat(value); }, maxListed),
                      "); give the table of this label map");
   return found;
 }

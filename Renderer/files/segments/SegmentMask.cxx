@@ -228,12 +228,14 @@ Box computeWorldBounds(const Grid& grid, const VoxelExtent& extent) {
 
 // ---- messages
 
+constexpr std::size_t maxListed = 12; ///< segments in a message
+
 std::string formatSegments(const std::vector<SegmentInfo>& segments) {
   const auto format = [](const SegmentInfo& segment) {
     const std::string id = sanitize(segment.id);
     return segment.name == segment.id ? id : concat(id, " (", sanitize(segment.name), ')');
   };
-  return join(segments, ", ", format, 12);
+  return join(segments, ", ", format, maxListed);
 }
 
 /// True if each word of the selector, ignoring a final s, begins a word of the name: "Kidneys" and
@@ -258,7 +260,7 @@ std::string suggestSegments(const std::string& selector, const std::vector<Segme
   if (!suggested.empty())
     return concat("did you mean ",
                   join(
-                      suggested, ", ", [](const auto& s) { return sanitize(s.name); }, 12),
+                      suggested, ", ", [](const auto& s) { return sanitize(s.name); }, maxListed),
                   "?");
   const bool unnamed = std::ranges::all_of(segments, [](const SegmentInfo& segment) {
     return segment.name == concat("Segment_", segment.labelValue);

@@ -21,6 +21,7 @@ constexpr SurfaceError damagedSurface{"is damaged or not a surface as Slicer wri
 constexpr SurfaceError largeSurface{
     "needs, with the surfaces before it, more than 1 GiB of memory"};
 
+/// Deducts `count` * `size` bytes from the budget.
 void charge(MemoryBudget& budget, std::uint64_t count, std::uint64_t size = 1) {
   if (count > budget.bytes / size)
     throw largeSurface;
@@ -71,15 +72,15 @@ std::string readPlainArray(std::string_view text, const ArrayEncoding& encoding)
 /// Inflates an array. Its header has the number of blocks, the sizes of a block and of the last one
 /// (0: complete), and the deflated size of each block; the blocks follow.
 std::string inflateArray(std::string_view text, const ArrayEncoding& encoding) {
-  const auto encodedSize = [](std::uint64_t bytes) { return (bytes + 2) / 3 * 4; };
+  const auto computeBase64Size = [](std::uint64_t bytes) { return (bytes + 2) / 3 * 4; };
   const std::size_t word = encoding.headerSize();
-  const std::string start = decodeBase64(text.substr(0, encodedSize(3 * word)));
+  const std::string start = decodeBase64(text.substr(0, computeBase64Size(3 * word)));
   const std::uint64_t blocks = encoding.header(start, 0);
   if (blocks > text.size())
     throw damagedSurface;
   if (blocks == 0)
     return {};
-  const std::uint64_t headerText = encodedSize((3 + blocks) * word);
+  const std::uint64_t headerText = computeBase64Size((3 + blocks) * word);
   if (headerText > text.size())
     throw damagedSurface;
   const std::string header = decodeBase64(text.substr(0, static_cast<std::size_t>(headerText)));

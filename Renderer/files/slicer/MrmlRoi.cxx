@@ -94,7 +94,7 @@ Affine readAnnotation(const std::filesystem::path& path) {
 
 Affine readInlineRoi(const MrmlScene& scene, const MrmlNode& roi) {
   std::string text = roi.text("ctrlPtsCoord"); // "x y z|x y z"
-  if (text.empty())
+  if (text.empty())                            // of the two spellings, one is missing
     text = roi.text("xyz") + roi.text("XYZ") + " " + roi.text("radiusXYZ") + roi.text("RadiusXYZ");
   std::replace(text.begin(), text.end(), '|', ' ');
   return makeAlignedBox(parseNumbers(text).value_or(std::vector<double>()),

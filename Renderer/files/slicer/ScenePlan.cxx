@@ -25,8 +25,9 @@ Nodes findNodes(const MrmlDocument& document, Matches&& matches) {
 }
 
 std::string formatNodes(const Nodes& nodes) {
+  constexpr std::size_t maxListed = 20;
   return join(
-      nodes, ", ", [](const MrmlNode* node) { return describeNode(*node); }, 20, "...");
+      nodes, ", ", [](const MrmlNode* node) { return describeNode(*node); }, maxListed, "...");
 }
 
 /// Node by id, else by name; null: none. Throws Error (input) if several have the name.
@@ -176,7 +177,7 @@ void rejectTechnique(const MrmlDocument& document, const MrmlNode* node) {
                                     "(Volume Rendering module), or render the volume's own file");
 }
 
-std::string explain(const MrmlNode& node, const std::string& why) {
+std::string formatReason(const MrmlNode& node, const std::string& why) {
   return node.tag + " " + describeNode(node) + ": " + why;
 }
 
@@ -186,23 +187,25 @@ void addReasons(const Nodes& nodes, const std::string& why, std::vector<std::str
     list.push_back(std::to_string(nodes.size()) + " nodes " + nodes.front()->tag + ": " + why);
   else
     for (const MrmlNode* node : nodes)
-      list.push_back(explain(*node, why));
+      list.push_back(formatReason(*node, why));
 }
 
 /// Reports settings of the rendering that path tracing does not support.
 void listRenderingSettings(const MrmlDocument& document, ScenePlan& plan) {
   const MrmlNode& rendering = *plan.rendering;
   if (!isVisible(rendering))
-    plan.ignored.push_back(explain(rendering, "is hidden in Slicer; its settings are used anyway"));
+    plan.ignored.push_back(
+        formatReason(rendering, "is hidden in Slicer; its settings are used anyway"));
   if (const MrmlNode* clip = document.follow(rendering, "ClipNode");
       clip && rendering.boolean("clipping", false))
-    plan.warnings.push_back(explain(*clip, "clips the rendering in Slicer, but is ignored here"));
+    plan.warnings.push_back(
+        formatReason(*clip, "clips the rendering in Slicer, but is ignored here"));
   if (const MrmlNode* shader = document.follow(rendering, "shaderProperty"))
-    plan.ignored.push_back(explain(*shader, "path tracing does not use shaders"));
+    plan.ignored.push_back(formatReason(*shader, "path tracing does not use shaders"));
   if (const MrmlNode* roi = document.follow(rendering, "roi"); roi && !plan.roi)
-    plan.ignored.push_back(explain(*roi, "cropping is off"));
+    plan.ignored.push_back(formatReason(*roi, "cropping is off"));
   if (!plan.roi && rendering.boolean("croppingEnabled", false))
-    plan.warnings.push_back(explain(rendering, "cropping is on without a region of interest"));
+    plan.warnings.push_back(formatReason(rendering, "cropping is on without a region of interest"));
 }
 
 void listUnused(const MrmlDocument& document, ScenePlan& plan) {

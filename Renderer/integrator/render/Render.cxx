@@ -67,7 +67,7 @@ std::uint64_t chooseNoisePassSize(const LastPass& last, const RenderSettings& se
   const std::uint64_t done = last.samples;
   if (done < minNoiseSamples)
     return std::min(choosePassSize(done, settings), minNoiseSamples - done);
-  constexpr double maxPerPixel = 256.0;
+  constexpr double maxPerPixel = 256.0; // samples of one pixel in a pass
   const double missing =
       static_cast<double>(done) * (std::pow(last.noise / settings.noise, 2.0) - 1.0);
   const double limit = maxPerPixel / last.plan.at(done + 1).maxRatio();
@@ -211,7 +211,7 @@ public:
     if (!isShortened)
       result.last.samples = done;
     if (hasDisplayNoise()) {
-      if (nextNoiseCheck(done - 1) != done)
+      if (nextNoiseCheck(done - 1) != done) // no estimate is due
         return false;
       noise = m_settings.displayNoise(result.film);
       return noise <= m_settings.noise;

@@ -10,12 +10,14 @@
 namespace fenestra {
 namespace {
 
-/// Minimum s of a pixel, relative to the mean s: a few samples can miss rare bright paths.
+/// Minimum s of a pixel (s: see SamplePlan), relative to the mean s: a few samples can miss rare
+/// bright paths.
 constexpr double minNoise = 0.25;
 constexpr int radius = 2; ///< pixels to each side in averageNeighbors()
 
-/// Variance of one sample / (x^2 + 0.01), mean over the channels. Stratification is ignored: the
-/// variance that it removes differs little between pixels, and would be estimated from few blocks.
+/// Variance of one sample / (x^2 + 0.01), x being the mean, averaged over the channels.
+/// Stratification is ignored: the variance that it removes differs little between pixels, and would
+/// be estimated from few blocks.
 double relativeVariance(const PixelSums& pixel) {
   if (pixel.isDeterministic)
     return 0.0;

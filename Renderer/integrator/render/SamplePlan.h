@@ -6,8 +6,9 @@
 namespace fenestra {
 
 /// Either all pixels get the same number or, after a pilot, noisier ones get more. The mean of
-/// se^2 / (x^2 + 0.01), Film::noise() squared, is minimal for a given time if each pixel's number
-/// is proportional to s = sqrt(variance / (x^2 + 0.01) / cost of a path).
+/// se^2 / (x^2 + 0.01), Film::noise() squared (x: a pixel's mean, se: its standard error), is
+/// minimal for a given time if each pixel's number is proportional to s = sqrt(variance / (x^2 +
+/// 0.01) / cost of a path).
 ///
 /// A pixel's s is estimated from the pilot samples of its neighbors, never from its own. Its number
 /// of samples thus does not depend on their values, and their mean, pilot included, is unbiased.

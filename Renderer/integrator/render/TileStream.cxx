@@ -31,10 +31,10 @@ void TileStream::fill(CameraSamples& samples, std::size_t maxCount) {
     const Tile& tile = m_tiles[m_current];
     const Run& run = tile.runs[m_run];
     const Sampler::Stream stream = sampler.stream(m_pass.m_film.index(run.column, run.row), m_next);
-    const auto first = static_cast<std::uint32_t>(m_next % stream.maxSamples);
+    const auto first = static_cast<std::uint32_t>(m_next % stream.maxSamples); // in the stream
     const std::size_t count = std::min(
         {maxCount - samples.size, run.end - m_next, std::size_t{stream.maxSamples} - first});
-    const auto begun = static_cast<std::uint32_t>(tile.results.size() - m_left);
+    const auto begun = static_cast<std::uint32_t>(tile.results.size() - m_left); // in the tile
     const std::size_t size = samples.size;
     for (std::uint32_t i = 0; i < count; ++i) {
       samples.column[size + i] = static_cast<float>(run.column);

@@ -2,7 +2,8 @@
 // The steps of a path: start, vertex (where emitted light is added), scattering. The scalar
 // reference; integrator/simd/PathSteps does the same for many paths at once.
 //
-// Radiative transfer, one extinction for the three channels:
+// Radiative transfer, one extinction sigma_t for the three channels, with the radiance L at a point
+// x from a direction w, and the transmittance T between two points:
 //   L(x, w) = T(x, exit) L_light(w) + ∫ T(x, y) sigma_t(y) ∫ f(y, w, w') L(y, w') dw' dy
 // with f = albedo * phase function, or surface lobes. Collisions are sampled with pdf T sigma_t, so
 // that throughput changes by f / pdf alone. Each vertex samples one light (next-event estimation),

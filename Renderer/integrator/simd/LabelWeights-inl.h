@@ -30,7 +30,7 @@ public:
     Float fraction = zeroUnless(which, 1.0F);
     LaneMask some = which;
     if (mixed.any()) {
-      const Remainder rest = forEachPlane(mixed, code ^ -1, visit);
+      const Remainder rest = forEachPlane(mixed, code ^ -1 /* ~code */, visit);
       components.setIf(mixed, rest.components);
       fraction.setIf(mixed, interpolate(rest.bytes));
       some = fraction > 0.0F;
@@ -79,6 +79,7 @@ private:
     Remainder rest{0, {-1, -1, -1, -1}};
     for (LaneMask left = mixed; left.any(); plane = plane + 1) {
       const Int start = zeroUnless(left, plane * std::int32_t{sizeof(LabelWeights::Plane)});
+      // Bytes 1 to 3: component, rest, isLast.
       const Int numbers = loadInts(memory + tail, Indices(start));
       const Bytes bytes = loadBytes(memory, start + m_corner.voxel);
       for (std::size_t i = 0; i < bytes.size(); ++i)
@@ -87,7 +88,7 @@ private:
       const Float fraction = zeroUnless(left, interpolate(bytes));
       if (const LaneMask some = fraction > 0.0F; some.any())
         visit(some, shiftRight<byte>(numbers) & 0xff, fraction);
-      left = left & (numbers < 1 << 3 * byte);
+      left = left & (numbers < 1 << 3 * byte); // isLast is 0
     }
     return rest;
   }

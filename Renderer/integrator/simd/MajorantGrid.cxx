@@ -148,7 +148,7 @@ SkipRadii chooseRadii(const PaddedGrid& grid, const std::vector<float>& majorant
 /// cells).
 constexpr std::int64_t maxMergedVoxels = 16;
 
-/// Code of a bound >= majorant > 0: the radius's bits are rounded up.
+/// Bits of a majorant > 0, rounded up so that those of the radius are 0.
 std::uint32_t encodeMajorant(float majorant) {
   constexpr auto mask = static_cast<std::uint32_t>(SimdMajorants::radiusBits);
   return (std::bit_cast<std::uint32_t>(majorant) + mask) & ~mask;

@@ -103,7 +103,7 @@ HWY_INLINE LineValue evalLines(const SimdLines& table, Int first, Float s) {
   const Float line = floor(place);
   const auto [value, rise] =
       loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(first + nonNegativeToInt(line))));
-  return {clampZero(fma(place - line, rise, value)), ~(rise == rise)};
+  return {clampZero(fma(place - line, rise, value)), ~(rise == rise)}; // NaN: a knot
 }
 
 /// Extinction (mm^-1) of a scalar, for media without mixture.

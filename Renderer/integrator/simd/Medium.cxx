@@ -96,8 +96,8 @@ void setContext(SimdMedium& medium, const ContextStyle& style, const Grid& grid)
   const Mask& focus = *style.focus;
   medium.context = {makeField(focus.voxels.data(), focus.grid),
                     affineRows(focus.grid.worldToIndex * grid.indexToWorld),
-                    0.5F * static_cast<float>(focus.maxValue), narrow(style.extinction),
-                    narrow(style.saturation)};
+                    0.5F * static_cast<float>(focus.maxValue), // indicator 1/2
+                    narrow(style.extinction), narrow(style.saturation)};
 }
 
 } // namespace

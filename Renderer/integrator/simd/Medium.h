@@ -34,7 +34,8 @@ struct SimdMedium {
     float insideCells;   ///< largest float below the number of cells
     float cellStride;    ///< offset of the next cell in SimdMajorants::codes
   };
-  /// Samples of the clip's depth buffer along one axis (clip/focus/DepthBuffer.h).
+  /// Samples of the clip's depth buffer along one axis: members of fenestra::DepthAxis
+  /// (clip/focus/DepthBuffer.h) or, with "per", 1 / them; last = size - 1, lastInside = inside - 1.
   struct DepthAxis {
     float perPitch, start, lastInside, before, perFactor, last;
   };

@@ -72,7 +72,7 @@ private:
       store(bounces + one, &m_paths.bounces[i]);
       alive = collide(i, active, first & active, origin, zeroUnless(active, distance));
     }
-    m_paths.ended[i / 64] |= isValid.without(alive).bits() << i % 64;
+    m_paths.ended[i / 64] |= isValid.without(alive).bits() << i % 64; // one bit per path
   }
 
   /// Adds the light emitted along scattered rays, up to their collision or at infinity.
@@ -110,12 +110,12 @@ private:
     };
     if (m_shading.hasSampledLights)
       sampleLights(i, at, random, [&](const Float3& toward) {
-        const ScatterEval s = phase.evaluate(toward);
+        const ScatterEval ofPhase = phase.evaluate(toward);
         if (!surfaces)
-          return s;
-        const ScatterEval o = surface().evaluate(toward);
-        return ScatterEval{select(at.surface, o.factor, s.factor),
-                           select(at.surface, o.pdf, s.pdf)};
+          return ofPhase;
+        const ScatterEval ofSurface = surface().evaluate(toward);
+        return ScatterEval{select(at.surface, ofSurface.factor, ofPhase.factor),
+                           select(at.surface, ofSurface.pdf, ofPhase.pdf)};
       });
 
     const Float choice = m_shading.hybrid ? random.uniform() : 0.0F; // even if no lane needs it

@@ -5,7 +5,7 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t lineCount = 1024;
+constexpr std::size_t lineCount = 1024; ///< bins per function, each with one line
 
 /// Appends the lines of a function over the equal bins of `bins`.
 void appendLines(std::vector<SimdTable::Line>& lines, const ScalarFunction& function,
@@ -33,7 +33,7 @@ void appendLines(std::vector<SimdTable::Line>& lines, const ScalarFunction& func
     lines.push_back({narrow(value - 0.25 * rise),
                      isLine ? narrow(rise) : std::numeric_limits<float>::quiet_NaN()});
   }
-  lines.push_back({narrow(knots.back().value[0]), 0.0F});
+  lines.push_back({narrow(knots.back().value[0]), 0.0F}); // from the last knot on
 }
 
 /// Bins per scalar unit over a range; 0 if a float cannot represent it.

@@ -70,7 +70,7 @@ SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, con
   toLocal = affineRows(local);
   localToIndex = affineRows(Affine(grid.worldToIndex.linear()));
   const double span = transfer.extinction.span();
-  const double scale = 0.5 / (span > 0.0 ? span : 1.0);
+  const double scale = 0.5 / (span > 0.0 ? span : 1.0); // differences span two voxels
   indexDifferenceToGradient =
       affineRows(Affine(Mat3(scale * grid.worldToIndex.linear().transpose())));
   if (bounces > 0) // without scattering no light is sampled, and the large tables are not needed

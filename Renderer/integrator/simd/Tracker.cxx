@@ -31,7 +31,8 @@ struct Queue {
   std::size_t left() const { return rays.size - next; }
 };
 
-/// One ray per lane. `isMixed`: the medium is a mixture.
+/// One ray per lane. `wantRatio`: estimates transmittances, instead of sampling collisions.
+/// `isMixed`: the medium is a mixture.
 template <typename Voxel, bool wantRatio, bool isMixed>
 class LaneSet {
 public:
@@ -210,9 +211,9 @@ private:
   Float m_depth = 0.0F;      ///< optical depth to the next tentative collision
   Float m_acceptance = 0.0F; ///< random number that accepts or rejects that collision
   Float m_majorant = 0.0F;   ///< at that collision
-  Float m_ratio = 0.0F;
-  Float m_scalar = 0.0F; ///< at a real collision
-  UInt m_counter = 0U;   ///< of the random number stream
+  Float m_ratio = 0.0F;      ///< transmittance so far
+  Float m_scalar = 0.0F;     ///< at a real collision
+  UInt m_counter = 0U;       ///< of the random number stream
   UInt m_cells = 0U, m_skipped = 0U;
   std::uint64_t m_lookups = 0;
 

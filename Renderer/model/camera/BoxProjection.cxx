@@ -20,9 +20,9 @@ BoxProjection::Bounds BoxProjection::project(const Size3& box) const {
                 center.head<2>() + m_half.head<2>()};
   if (!m_perspective)
     return bounds;
-  if (bounds.depths.end < 0.0)
+  if (bounds.depths.end < 0.0) // behind the camera: empty
     return {{infinity, -infinity}, Vec2::Constant(infinity), Vec2::Constant(-infinity)};
-  if (!(bounds.depths.begin > 0.0))
+  if (!(bounds.depths.begin > 0.0)) // partly behind it: unbounded
     return {bounds.depths, Vec2::Constant(-infinity), Vec2::Constant(infinity)};
   const double beginScale = m_targetDepth / bounds.depths.begin;
   const double endScale = m_targetDepth / bounds.depths.end;

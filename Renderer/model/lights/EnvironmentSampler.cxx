@@ -61,7 +61,8 @@ Rgb EnvironmentSampler::texel(std::size_t index) const {
   return m_light.radiance * Rgb(rgb[0], rgb[1], rgb[2]);
 }
 
-/// EnvironmentMap's layout: u = 1/2 + atan2(d_R, d_A) / (2 pi), v = acos(d_S) / pi from the top.
+/// EnvironmentMap's layout: u = 1/2 + atan2(d_R, d_A) / (2 pi), v = acos(d_S) / pi from the top,
+/// for d in RAS.
 std::size_t EnvironmentSampler::findTexel(const Vec3& d) const {
   const int width = m_light.map.width;
   const int height = m_light.map.height;

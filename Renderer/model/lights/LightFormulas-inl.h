@@ -54,7 +54,7 @@ FENESTRA_INLINE Float computeDistance(const Lights::Sphere& light, Float distanc
   const Float outside = distance2 - light.radius2;
   const Float half = sqrt(max(light.radius2 - across2, 0.0F)); // half chord
   const Float far = along + half;
-  return select(outside > 0.0F, outside / far, far);
+  return select(outside > 0.0F, outside / far, far); // outside = near * far
 }
 
 /// Samples a direction in the cone that the sphere subtends at `point`, in the lanes of `mine`.

@@ -135,7 +135,7 @@ Mask uniteMasks(std::vector<Mask> masks) {
     const Region region = findRegion(mask);
     forEachVoxel(region, [&](const Size3& voxel, std::size_t number) {
       std::uint8_t& to = result.voxels[linearIndex(voxel - all.first, all.size)];
-      result.count += to < mask.voxels[number];
+      result.count += to < mask.voxels[number]; // masks are binary: newly set voxels
       to = std::max(to, mask.voxels[number]);
     });
     if (&mask != &first)

@@ -162,7 +162,8 @@ Mask findOuterLayer(const Volume& volume, double airBelow, double depth) {
   const Vec3 sigmas = ((depth / 1.2816) * layer.grid.spacing().cwiseInverse())
                           .cwiseMin(layer.grid.size.cast<double>());
   layer.voxels = blurMask(layer, Size3::Zero(), layer.grid.size, sigmas);
-  std::array<std::uint8_t, 256> remapped; // indicator by blurred value
+  // Indicator by blurred value: a ramp around 0.1, which is the blurred value at `depth`.
+  std::array<std::uint8_t, 256> remapped;
   for (std::size_t i = 0; i < remapped.size(); ++i) {
     const double indicator = std::clamp((static_cast<double>(i) / 255.0 - 0.05) / 0.1, 0.0, 1.0);
     remapped[i] = static_cast<std::uint8_t>(std::lround(indicator * layer.maxValue));
@@ -187,7 +188,7 @@ Mask resampleMask(const Mask& layer, const Grid& labels, const Grid& volume) {
   const Size3& size = mask.grid.size;
   mask.voxels.resize(static_cast<std::size_t>(size.prod()));
   const MaskResampler resampler(layer, layer.grid.worldToIndex * indexToWorld);
-  constexpr std::int64_t edge = 8;
+  constexpr std::int64_t edge = 8; // voxels, of a block
   tbb::parallel_for(std::int64_t{0}, (size.z() + edge - 1) / edge, [&](std::int64_t slab) {
     for (std::int64_t y = 0; y < size.y(); y += edge)
       for (std::int64_t x = 0; x < size.x(); x += edge) {

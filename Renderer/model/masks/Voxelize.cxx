@@ -24,7 +24,8 @@ double computeEdgeArea(const Vec3& a, const Vec3& b, double y, double z) {
   return (b.y() - a.y()) * (z - a.z()) - (b.z() - a.z()) * (y - a.y());
 }
 
-/// Side of the edge on which the perturbed row lies: 1 or -1; 0 if the edge is a single point.
+/// Side of the edge on which the row, perturbed as in Voxelize.h, lies: 1 or -1; 0 if the edge is a
+/// single point.
 int findEdgeSide(const Vec3& a, const Vec3& b, double area) {
   const auto sign = [](double x) { return (x > 0.0) - (x < 0.0); };
   if (area != 0.0)

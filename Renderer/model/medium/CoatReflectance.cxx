@@ -7,7 +7,8 @@
 namespace fenestra {
 namespace {
 
-/// Directional albedo of the GGX lobe: mean weight of its samples on a regular grid.
+/// Directional albedo of the GGX lobe: mean weight of its samples on a regular grid. There is no
+/// other lobe, so the first argument of sample(), which selects one, has no effect.
 double estimateReflectance(const SurfaceShading& ggx, double cosine) {
   constexpr int strata = 32;
   const Vec3 incoming(-std::sqrt(1.0 - cosine * cosine), 0.0, -cosine);
@@ -33,10 +34,11 @@ CoatReflectance fitCoatReflectance(double roughness) {
     const double cosine = (i + 0.5) / angles, x = 1.0 - cosine;
     reflected[i] = estimateReflectance(ggx, cosine);
     powers.row(i) << 1.0, std::pow(x, 2), std::pow(x, 4), std::pow(x, 8);
-    weights[i] = std::sqrt(cosine);
+    weights[i] = std::sqrt(cosine); // squared errors are weighted by the cosine
   }
   const Eigen::Vector4d fit =
       (weights.asDiagonal() * powers).colPivHouseholderQr().solve(weights.asDiagonal() * reflected);
+  // Raises the fit to at least the reflectance at all angles.
   const double missing = (reflected - powers * fit).maxCoeff();
   return {fit[0] + std::max(0.0, missing), fit[1], fit[2], fit[3]};
 }

@@ -268,7 +268,7 @@ LabelWeights::LabelWeights(std::size_t count, const std::function<Part(std::size
       }
     }
   });
-  // So far, planes are counted from the first plane of their own layer.
+  // Join the layers. So far, codes count planes from the first plane of their own layer.
   std::size_t all = 0;
   for (const std::vector<Plane>& planes : layers)
     all += planes.size();

@@ -19,6 +19,7 @@ std::ptrdiff_t countEqual(Row row) {
   return other - row.begin();
 }
 
+/// Appends the encoded row (PackedMask::Slice).
 void packRow(Row row, std::vector<std::uint8_t>& bytes) {
   const auto addByte = [&bytes](std::ptrdiff_t value) {
     bytes.push_back(static_cast<std::uint8_t>(value));

@@ -14,6 +14,7 @@ ScatterSample toSample(const scalar::ScatterSamples& sample) {
 
 } // namespace
 
+// The power is the inverse of roughness^2 = 2 / (power + 2); 0.47: SurfaceShading::oddsFactor.
 SurfaceShading SurfaceShading::makeCoated(double specular, double roughness, double g) {
   return {.diffuse = 1.0,
           .specular = specular,
@@ -28,7 +29,7 @@ SurfaceShading::Lobes SurfaceShading::lobes() const {
     return {diffuse / (1.0 - coat.mean()), specular, tissueF0, coat};
   }
   const double total = std::max(1.0, diffuse + specular);
-  return {diffuse / total, specular / total, 0.04, {}};
+  return {diffuse / total, specular / total, 0.04, {}}; // F0 of 0.04, no coat
 }
 
 BsdfParameters<double> makeBsdfParameters(double g, const std::optional<SurfaceShading>& shading) {

@@ -40,24 +40,24 @@ int checkRigs() {
 }
 
 int checkStrengths() {
-  const auto first = [](const Strengths& strengths, int light) {
+  const auto redOfStudio = [](const Strengths& strengths, int light) {
     return parseLights(makeFlag("studio", strengths))[light]
         .toObject()["radiance"]
         .toArray()[0]
         .toDouble();
   };
-  CHECK_DOUBLE(first({2.0, 1.0, 1.0, 1.0}, 0), 2.0 * first({1.0, 0.5, 1.0, 1.0}, 0));
-  CHECK_DOUBLE(first({1.0, 0.5, 1.0, 1.0}, 1), 0.5 * first({2.0, 1.0, 1.0, 1.0}, 1));
-  CHECK_DOUBLE(first({1.0, 1.0, 0.0, 1.0}, 2), 0.0);
-  const auto cinema = [](const Strengths& strengths, int light, const char* key) {
+  CHECK_DOUBLE(redOfStudio({2.0, 1.0, 1.0, 1.0}, 0), 2.0 * redOfStudio({1.0, 0.5, 1.0, 1.0}, 0));
+  CHECK_DOUBLE(redOfStudio({1.0, 0.5, 1.0, 1.0}, 1), 0.5 * redOfStudio({2.0, 1.0, 1.0, 1.0}, 1));
+  CHECK_DOUBLE(redOfStudio({1.0, 1.0, 0.0, 1.0}, 2), 0.0);
+  const auto fieldOfCinema = [](const Strengths& strengths, int light, const char* key) {
     return parseLights(makeFlag("cinema", strengths))[light].toObject().value(key);
   };
   const Strengths half = {0.5, 1.0, 1.0, 0.5};
-  CHECK_DOUBLE(cinema(half, 0, "radiance").toDouble(),
-               0.25 * cinema({2.0, 1.0, 1.0, 1.0}, 0, "radiance").toDouble());
-  CHECK_DOUBLE(cinema(half, 3, "top").toArray()[2].toDouble(),
-               0.25 * cinema({1.0, 1.0, 1.0, 2.0}, 3, "top").toArray()[2].toDouble());
-  CHECK_BOOL(cinema(half, 0, "color").toString().startsWith("#"), true);
+  CHECK_DOUBLE(fieldOfCinema(half, 0, "radiance").toDouble(),
+               0.25 * fieldOfCinema({2.0, 1.0, 1.0, 1.0}, 0, "radiance").toDouble());
+  CHECK_DOUBLE(fieldOfCinema(half, 3, "top").toArray()[2].toDouble(),
+               0.25 * fieldOfCinema({1.0, 1.0, 1.0, 2.0}, 3, "top").toArray()[2].toDouble());
+  CHECK_BOOL(fieldOfCinema(half, 0, "color").toString().startsWith("#"), true);
   return EXIT_SUCCESS;
 }
 

@@ -92,7 +92,9 @@ int compareWithCommandLine(vtkMRMLScene* scene, Node* render, const QString& pro
   auto* radiance =
       vtkMRMLVectorVolumeNode::SafeDownCast(render->GetNodeReference(Node::RadianceRole));
   CHECK_NOT_NULL(radiance);
-  const size_t bytes = static_cast<size_t>(radiance->GetImageData()->GetNumberOfPoints()) * 16;
+  constexpr size_t pixelBytes = 4 * sizeof(float); // RGBA
+  const size_t bytes =
+      static_cast<size_t>(radiance->GetImageData()->GetNumberOfPoints()) * pixelBytes;
   CHECK_BOOL(line.bytes() == bytes, true);
   CHECK_INT(std::memcmp(line.data.get(), radiance->GetImageData()->GetScalarPointer(), bytes), 0);
   return EXIT_SUCCESS;

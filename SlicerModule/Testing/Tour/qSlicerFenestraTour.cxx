@@ -43,12 +43,13 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 
-QByteArray radianceOf(Node* render) {
+QByteArray copyRadiance(Node* render) {
   auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::RadianceRole));
   if (!volume)
     return {};
+  constexpr int pixelBytes = 4 * sizeof(float); // RGBA
   return QByteArray(static_cast<const char*>(volume->GetImageData()->GetScalarPointer()),
-                    static_cast<int>(volume->GetImageData()->GetNumberOfPoints()) * 16);
+                    static_cast<int>(volume->GetImageData()->GetNumberOfPoints()) * pixelBytes);
 }
 
 } // namespace
@@ -188,7 +189,7 @@ bool qSlicerFenestraTour::render() {
   m_measurements["render"] = m_panel->findChild<QLabel*>("StateLabel")->text();
   wait(8000); // volume rendering in a new view is slow without a GPU
   takeScreenshot("7-result");
-  return lastRender() && !radianceOf(lastRender()).isEmpty();
+  return lastRender() && !copyRadiance(lastRender()).isEmpty();
 }
 
 /// Hides Slicer's own volume rendering, to measure only the module's pauses.
@@ -326,7 +327,7 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   Node* const first = firstRender();
   if (!first)
     return false;
-  const QByteArray before = radianceOf(first);
+  const QByteArray before = copyRadiance(first);
   const std::string name = first->GetName();
   const int frames = vtkSlicerFenestraLogic::GetNumberOfFrames(lastRender());
   qSlicerIO::IOProperties properties;
@@ -348,7 +349,7 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   auto* again = Node::SafeDownCast(scene->GetFirstNodeByName(name.c_str()));
   if (!again)
     return false;
-  m_measurements["readBack"] = radianceOf(again) == before &&
+  m_measurements["readBack"] = copyRadiance(again) == before &&
                                vtkSlicerFenestraLogic::GetNumberOfFrames(lastRender()) == frames;
   for (const char* subject : {"VolumeBox", "SegmentationBox"})
     if (!m_panel->findChild<qMRMLNodeComboBox*>(subject)->currentNode())
@@ -361,7 +362,7 @@ bool qSlicerFenestraTour::saveAndRepeat() {
     return false;
   wait(2000);
   takeScreenshot("10-repeated");
-  m_measurements["repeatedBitForBit"] = radianceOf(lastRender()) == before;
+  m_measurements["repeatedBitForBit"] = copyRadiance(lastRender()) == before;
   return m_measurements["repeatedBitForBit"].toBool() && m_measurements["readBack"].toBool();
 }
 
