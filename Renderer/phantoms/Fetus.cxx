@@ -45,7 +45,9 @@ public:
              uterineWall);
   }
 
-  PaintSite makeSite(const Vec3& point) const { return {point, -infinity}; } // skin is out of view
+  PaintSite makeSite(const Vec3& point, double reach) const {
+    return {point, reach, -infinity}; // skin is out of view
+  }
 
   /// Applies speckle at pulse size, attenuation with depth, and noise.
   std::int16_t acquire(double signal, const Vec3& point, std::uint64_t voxel) const {

@@ -115,9 +115,10 @@ double FootSubject::skinDistance(const Vec3& p, double nearestBone) const {
   return surface;
 }
 
-FootSite FootSubject::makeSite(const Vec3& p) const {
+FootSite FootSubject::makeSite(const Vec3& p, double reach) const {
   FootSite s{};
   s.point = p;
+  s.reach = reach;
   s.bones = m_bones.distances(p);
   const auto nearest = std::min_element(s.bones.begin(), s.bones.end());
   s.nearest = static_cast<std::size_t>(nearest - s.bones.begin());
@@ -125,9 +126,11 @@ FootSite FootSubject::makeSite(const Vec3& p) const {
   for (std::size_t i = 0; i < s.bones.size(); ++i)
     if (i != s.nearest)
       s.second = std::min(s.second, s.bones[i]);
+  s.surface = skinDistance(p, *nearest);
+  if (s.surface > reach)
+    return s;
   s.shaft = m_bones.shaftPosition(s.nearest, p);
   s.cancellousBone = m_bones.bones()[s.nearest].cancellousBone;
-  s.surface = skinDistance(p, *nearest);
   s.fascia = s.surface + footFasciaDepth(p);
   return s;
 }

@@ -27,7 +27,7 @@ public:
 
   FootSubject();
 
-  FootSite makeSite(const Vec3& point) const;
+  FootSite makeSite(const Vec3& point, double reach) const;
   /// Adds noise, and clamps to 12 bits like a scanner.
   std::int16_t acquire(double signal, const Vec3& point, std::uint64_t voxel) const;
 

@@ -117,7 +117,7 @@ public:
 
   KneeSubject();
 
-  KneeSite makeSite(const Vec3& point) const;
+  KneeSite makeSite(const Vec3& point, double reach) const;
   std::int16_t acquire(double signal, const Vec3& point, std::uint64_t voxel) const {
     const double noisy = ricianNoise(signal * biasField(point), noiseSigma, voxel);
     return static_cast<std::int16_t>(std::lround(noisy));
@@ -170,10 +170,13 @@ KneeSubject::KneeSubject() : LayeredSubject(kneeBoxMargin) {
   addCovers();
 }
 
-KneeSite KneeSubject::makeSite(const Vec3& p) const {
+KneeSite KneeSubject::makeSite(const Vec3& p, double reach) const {
   KneeSite s{};
   s.point = p;
+  s.reach = reach;
   s.surface = legOutline(m_trunk, p);
+  if (s.surface > reach)
+    return s;
   s.fascia = s.surface + fasciaDepth(p);
   s.femur = m_bones.femur(p);
   s.tibia = m_bones.tibia(p);
@@ -266,14 +269,19 @@ void KneeSubject::addVessels(const char* kind, const Field& signal) {
 
 /// Adds each muscle with a layer of fat that separates it from its neighbors.
 void KneeSubject::addMuscles() {
+  static constexpr double separation = 0.8; // mm
   m_deepFat = addSegment("IntermuscularFat", "Intermuscular fat", fatColor);
   addStructures("muscles", muscleColor, [this](std::uint8_t label, const Solid& belly) {
-    const auto shape = [belly](const Vec3& p) {
-      return belly.distance(p) + 0.9 * valueNoise(p / 8.0, 92);
+    const auto shape = [belly](const KneeSite& s) {
+      constexpr double roughness = 0.9, most = roughness + separation;
+      const double distance = belly.distance(s.point);
+      return std::abs(distance) > s.reach + most
+                 ? distance
+                 : distance + roughness * valueNoise(s.point / 8.0, 92);
     };
     addDeepLayer(label, muscleSignal, belly.box, shape);
     addDeepLayer(m_deepFat, deepFatSignal, belly.box,
-                 [shape](const Vec3& p) { return shape(p) - 0.8; });
+                 [shape](const KneeSite& s) { return shape(s) - separation; });
   });
 }
 

@@ -12,8 +12,8 @@ double septa(const Vec3& p, const Vec3& size, double thickness, std::uint64_t se
   const Vec3 bend{valueNoise(p / 5.0, seed + 100), valueNoise(p / 5.0, seed + 101),
                   valueNoise(p / 5.0, seed + 102)};
   const double level = std::abs(valueNoise((p + 2.0 * bend).cwiseQuotient(size), seed));
-  return (1.0 - smoothStep(0.2 * thickness, thickness, level)) *
-         smoothStep(-0.5, 0.5, valueNoise(p / 9.0, seed + 103));
+  const double sheet = 1.0 - smoothStep(0.2 * thickness, thickness, level);
+  return sheet == 0.0 ? 0.0 : sheet * smoothStep(-0.5, 0.5, valueNoise(p / 9.0, seed + 103));
 }
 
 /// Growth plate scars: dark, slightly wavy sheets.

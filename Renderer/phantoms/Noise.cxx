@@ -2,16 +2,45 @@
 
 #include "base/Random.h"
 
+#include <array>
+#include <limits>
+
 namespace fenestra {
 
 namespace {
 
-double latticeValue(std::int64_t x, std::int64_t y, std::int64_t z, std::uint64_t seed) {
+/// A cell of the lattice with the values at its corners, x varying fastest.
+struct LatticeCell {
+  Size3 lower = Size3::Constant(std::numeric_limits<std::int64_t>::min()); ///< of no cell
+  std::uint64_t seed = 0;
+  std::array<double, 8> values = {};
+};
+
+/// The cell above `lower`. Successive points mostly lie in the same one, so each thread keeps the
+/// last cell of each field.
+const LatticeCell& findCell(const Size3& lower, std::uint64_t seed) {
+  thread_local std::array<LatticeCell, 512> cells;
+  LatticeCell& cell = cells[seed % cells.size()];
+  if (cell.lower == lower && cell.seed == seed)
+    return cell;
   // Odd constants spread the coordinates over 64 bits before mixing.
-  const std::uint64_t key = static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL +
-                            static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fULL +
-                            static_cast<std::uint64_t>(z) * 0x165667b19e3779f9ULL + seed;
-  return static_cast<double>(mixBits(key) >> 11) * 0x1p-52 - 1.0;
+  constexpr Vector<std::uint64_t, 3> spread{0x9e3779b97f4a7c15ULL, 0xc2b2ae3d27d4eb4fULL,
+                                            0x165667b19e3779f9ULL};
+  const std::uint64_t first = lower.cast<std::uint64_t>().dot(spread) + seed;
+  for (std::uint64_t i = 0; i < cell.values.size(); ++i) {
+    const std::uint64_t key =
+        first + (i & 1) * spread.x() + (i >> 1 & 1) * spread.y() + (i >> 2) * spread.z();
+    cell.values[i] = static_cast<double>(mixBits(key) >> 11) * 0x1p-52 - 1.0;
+  }
+  cell.lower = lower;
+  cell.seed = seed;
+  return cell;
+}
+
+/// Largest integer up to x; std::floor is a call of a library where SSE 4.1 may be missing.
+std::int64_t floorToInteger(double x) {
+  const auto truncated = static_cast<std::int64_t>(x);
+  return truncated - (static_cast<double>(truncated) > x);
 }
 
 /// Two independent normal deviates (Box and Muller 1958).
@@ -25,19 +54,13 @@ Vec2 normalPair(std::uint64_t voxel) {
 } // namespace
 
 double valueNoise(const Vec3& point, std::uint64_t seed) {
-  const Vec3 floor = point.array().floor();
-  const Vec3 f = point - floor;
+  const Size3 lower = point.unaryExpr(floorToInteger);
+  const Vec3 f = point - lower.cast<double>();
   // Smoothstep: weights of the upper lattice points.
   const Vec3 s = f.array().square() * (3.0 - 2.0 * f.array());
-  const auto x = static_cast<std::int64_t>(floor.x());
-  const auto y = static_cast<std::int64_t>(floor.y());
-  const auto z = static_cast<std::int64_t>(floor.z());
-  const auto edge = [&](std::int64_t dy, std::int64_t dz) {
-    return std::lerp(latticeValue(x, y + dy, z + dz, seed),
-                     latticeValue(x + 1, y + dy, z + dz, seed), s.x());
-  };
-  return std::lerp(std::lerp(edge(0, 0), edge(1, 0), s.y()),
-                   std::lerp(edge(0, 1), edge(1, 1), s.y()), s.z());
+  const auto& values = findCell(lower, seed).values;
+  const auto edge = [&](std::size_t i) { return std::lerp(values[i], values[i + 1], s.x()); };
+  return std::lerp(std::lerp(edge(0), edge(2), s.y()), std::lerp(edge(4), edge(6), s.y()), s.z());
 }
 
 double normalNoise(std::uint64_t voxel) {

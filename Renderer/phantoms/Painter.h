@@ -12,6 +12,7 @@ namespace fenestra {
 
 struct PaintSite {
   Vec3 point;     ///< world
+  double reach;   ///< mm; a distance beyond it only needs the right sign, and to be beyond it
   double surface; ///< mm to the subject's outer surface
 
   /// Lets functions of a point serve as functions of a site.
@@ -61,8 +62,12 @@ protected:
   static Field makeInset(double depth) {
     return [depth](const Site& site) { return site.surface + depth; };
   }
-  static Field makeIntersection(Field a, Field b) {
-    return [a = std::move(a), b = std::move(b)](const Site& s) { return std::max(a(s), b(s)); };
+  /// `bound`: the shape that takes less time, and often suffices.
+  static Field makeIntersection(Field shape, Field bound) {
+    return [shape = std::move(shape), bound = std::move(bound)](const Site& site) {
+      const double outside = bound(site);
+      return outside > site.reach ? outside : std::max(shape(site), outside);
+    };
   }
 
 private:
@@ -82,7 +87,8 @@ inline const Rgb skinColor{0.694, 0.478, 0.396};
 /// Paints each voxel of a grid from the front layer to the back, until it is completely covered.
 ///
 /// A Subject is a LayeredSubject with `background`, the signal around the subject;
-/// `makeSite(point)`, world; and `acquire(signal, point, voxel)`, the scanner's output, int16.
+/// `makeSite(point, reach)`, which may leave the site incomplete where its surface is farther away
+/// than `reach`; and `acquire(signal, point, voxel)`, the scanner's output, int16.
 template <typename Subject>
 class Painter {
 public:
@@ -99,25 +105,33 @@ public:
       : m_subject(subject),
         m_rowStep(grid.indexToWorld.linear().col(0)),
         m_sliceStep(grid.indexToWorld.linear().col(2)),
-        m_softness(0.6 * std::cbrt(grid.spacing().prod())) {}
+        m_softness(0.6 * std::cbrt(grid.spacing().prod())),
+        m_boundaryRange(m_softness + m_sliceStep.norm() / 3.0) {}
+
+  /// A layer that a row of voxels can intersect.
+  struct RowLayer {
+    const Layer* layer;
+    Box box; ///< outside, the layer covers nothing
+  };
+  using Row = std::vector<RowLayer>;
 
   /// Layers that a row of voxels along the first axis can intersect.
-  std::vector<const Layer*> findRowLayers(const Vec3& start, std::int64_t count) const {
+  Row findRowLayers(const Vec3& start, std::int64_t count) const {
     const double length = m_rowStep.norm();
     const Ray row{start, m_rowStep / length};
     const Interval range{-length, length * static_cast<double>(count)};
-    std::vector<const Layer*> layers;
+    Row layers;
     for (const Layer& layer : m_subject.layers())
-      if (!expandBox(layer.box, boundaryRange()).clip(row, range).isEmpty())
-        layers.push_back(&layer);
+      if (!expandBox(layer.box, m_boundaryRange).clip(row, range).isEmpty())
+        layers.push_back({&layer, expandBox(layer.box, m_softness)});
     return layers;
   }
 
   /// Mean over the slice's thickness, which equals the slice distance: from three points near a
   /// boundary, elsewhere from the center alone.
-  Sample paintVoxel(const std::vector<const Layer*>& row, const Vec3& center) const {
+  Sample paintVoxel(const Row& row, const Vec3& center) const {
     Sample middle = paint(row, center);
-    if (middle.boundaryDistance > boundaryRange())
+    if (middle.boundaryDistance > m_boundaryRange)
       return middle;
     for (const double offset : {-1.0 / 3.0, 1.0 / 3.0})
       middle.signal += paint(row, center + offset * m_sliceStep).signal;
@@ -126,11 +140,8 @@ public:
   }
 
 private:
-  /// Largest distance from a voxel's center, mm, at which a boundary affects the voxel.
-  double boundaryRange() const { return m_softness + m_sliceStep.norm() / 3.0; }
-
-  Sample paint(const std::vector<const Layer*>& row, const Vec3& point) const {
-    const auto site = m_subject.makeSite(point);
+  Sample paint(const Row& row, const Vec3& point) const {
+    const auto site = m_subject.makeSite(point, m_boundaryRange);
     Sample sample;
     sample.signal = m_subject.background;
     sample.boundaryDistance = std::abs(site.surface);
@@ -138,8 +149,8 @@ private:
       return sample;
     sample.signal = 0.0;
     double visible = 1.0; // fraction of the voxel not yet covered
-    for (const Layer* layer : row) {
-      if (!contains(expandBox(layer->box, m_softness), point))
+    for (const auto& [layer, box] : row) {
+      if (!contains(box, point))
         continue;
       const double distance = layer->distance(site);
       sample.boundaryDistance = std::min(sample.boundaryDistance, std::abs(distance));
@@ -161,6 +172,8 @@ private:
   const Subject& m_subject;
   Vec3 m_rowStep, m_sliceStep; ///< vectors to the next voxel in a row, and to the next slice
   double m_softness;           ///< mm; half the width of a boundary
+  /// Largest distance from a voxel's center, mm, at which a boundary affects the voxel.
+  double m_boundaryRange;
 };
 
 /// Paints the subject's volume, called `name`, and one layer of labels on the complete grid. The

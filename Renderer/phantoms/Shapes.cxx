@@ -4,14 +4,21 @@ namespace fenestra {
 
 namespace {
 
-/// Point of a Catmull-Rom curve between b (t = 0) and c (t = 1).
+/// The piece of a Catmull-Rom curve between its nodes b (t = 0) and c (t = 1).
 template <typename T>
-T catmullRom(const T& a, const T& b, const T& c, const T& d, double t) {
-  const T linear = 0.5 * (c - a);
-  const T square = a - 2.5 * b + 2.0 * c - 0.5 * d;
-  const T cube = 0.5 * (d - a) + 1.5 * (b - c);
-  return b + t * (linear + t * (square + t * cube));
-}
+class CurvePiece {
+public:
+  CurvePiece(const T& a, const T& b, const T& c, const T& d)
+      : m_start(b),
+        m_linear(0.5 * (c - a)),
+        m_square(a - 2.5 * b + 2.0 * c - 0.5 * d),
+        m_cube(0.5 * (d - a) + 1.5 * (b - c)) {}
+
+  T at(double t) const { return m_start + t * (m_linear + t * (m_square + t * m_cube)); }
+
+private:
+  T m_start, m_linear, m_square, m_cube;
+};
 
 constexpr int tubePieces = 6; ///< per pair of nodes: enough to hide the corners
 
@@ -21,10 +28,10 @@ std::vector<TubeNode> refineTube(const std::vector<TubeNode>& nodes) {
   for (std::size_t i = 0; i < last; ++i) {
     const TubeNode& a = nodes[i == 0 ? 0 : i - 1];
     const TubeNode& d = nodes[std::min(i + 2, last)];
+    const CurvePiece<Vec3> curve(a.point, nodes[i].point, nodes[i + 1].point, d.point);
     for (int piece = 0; piece < tubePieces; ++piece) {
       const double t = static_cast<double>(piece) / tubePieces;
-      result.push_back({catmullRom(a.point, nodes[i].point, nodes[i + 1].point, d.point, t),
-                        std::lerp(nodes[i].radius, nodes[i + 1].radius, t)});
+      result.push_back({curve.at(t), std::lerp(nodes[i].radius, nodes[i + 1].radius, t)});
     }
   }
   result.push_back(nodes.back());
@@ -52,18 +59,34 @@ Box mapBox(const Affine& map, const Box& box) {
   return result;
 }
 
-LoftSection findSection(const std::vector<LoftSection>& sections, double z) {
+/// A loft between two of its sections.
+struct LoftPiece {
+  double bottom, height; ///< z
+  CurvePiece<Vec2> center, radii;
+};
+
+std::vector<LoftPiece> makeLoftPieces(const std::vector<LoftSection>& sections) {
+  std::vector<LoftPiece> pieces;
   const std::size_t last = sections.size() - 1;
-  std::size_t i = 0;
-  while (i + 1 < last && z > sections[i + 1].z)
-    ++i;
-  const LoftSection& a = sections[i == 0 ? 0 : i - 1];
-  const LoftSection& b = sections[i];
-  const LoftSection& c = sections[i + 1];
-  const LoftSection& d = sections[std::min(i + 2, last)];
-  const double t = std::clamp((z - b.z) / (c.z - b.z), 0.0, 1.0);
-  return {z, catmullRom(a.center, b.center, c.center, d.center, t),
-          catmullRom(a.radii, b.radii, c.radii, d.radii, t).cwiseMax(0.5)};
+  for (std::size_t i = 0; i < last; ++i) {
+    const LoftSection& a = sections[i == 0 ? 0 : i - 1];
+    const LoftSection& b = sections[i];
+    const LoftSection& c = sections[i + 1];
+    const LoftSection& d = sections[std::min(i + 2, last)];
+    pieces.push_back({b.z,
+                      c.z - b.z,
+                      {a.center, b.center, c.center, d.center},
+                      {a.radii, b.radii, c.radii, d.radii}});
+  }
+  return pieces;
+}
+
+LoftSection findSection(const std::vector<LoftPiece>& pieces, double z) {
+  auto piece = pieces.begin();
+  while (piece + 1 != pieces.end() && z > (piece + 1)->bottom)
+    ++piece;
+  const double t = std::clamp((z - piece->bottom) / piece->height, 0.0, 1.0);
+  return {z, piece->center.at(t), piece->radii.at(t).cwiseMax(0.5)};
 }
 
 /// Distance to a tube with nodes as dense as refineTube() makes them.
@@ -101,14 +124,6 @@ double ellipsoidDistance(const Vec3& point, const Vec3& center, const Vec3& radi
   return (level - 1.0) / std::max(slope, 1e-9);
 }
 
-Box expandBox(const Box& box, double margin) {
-  return {box.lower.array() - margin, box.upper.array() + margin};
-}
-
-bool contains(const Box& box, const Vec3& point) {
-  return (point.array() >= box.lower.array()).all() && (point.array() <= box.upper.array()).all();
-}
-
 Solid makeEllipsoid(const Vec3& center, const Vec3& radii) {
   return {[=](const Vec3& p) { return ellipsoidDistance(p, center, radii); },
           {center - radii, center + radii}};
@@ -131,8 +146,8 @@ Solid makeLoft(const std::vector<LoftSection>& sections, double squareness, doub
     }
   const double bottom = sections.front().z, top = sections.back().z;
   const double overshoot = 2.0; // mm; of a Catmull-Rom curve beyond its nodes
-  return {[=](const Vec3& p) {
-            const LoftSection section = findSection(sections, p.z());
+  return {[=, pieces = makeLoftPieces(sections)](const Vec3& p) {
+            const LoftSection section = findSection(pieces, p.z());
             const double side =
                 ellipseDistance(p.head<2>() - section.center, section.radii, squareness);
             return smoothIntersection(side, std::max(bottom - p.z(), p.z() - top), capBlend);

@@ -17,8 +17,12 @@ double smoothDifference(double a, double b, double blend);
 
 double ellipsoidDistance(const Vec3& point, const Vec3& center, const Vec3& radii);
 
-Box expandBox(const Box& box, double margin);
-bool contains(const Box& box, const Vec3& point);
+inline Box expandBox(const Box& box, double margin) {
+  return {box.lower.array() - margin, box.upper.array() + margin};
+}
+inline bool contains(const Box& box, const Vec3& point) {
+  return (point.array() >= box.lower.array()).all() && (point.array() <= box.upper.array()).all();
+}
 
 /// A shape with a bounding box, in the world.
 struct Solid {
