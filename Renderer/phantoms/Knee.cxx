@@ -23,6 +23,7 @@ struct KneeSite : PaintSite {
   double fascia;                        ///< mm to the sheath around muscles and joint
   double femur, tibia, fibula, patella; ///< mm to the bones' surfaces
   double femoralCartilage, intactFemoralCartilage, tibialCartilage, patellarCartilage; ///< mm
+  mutable double muscle; ///< mm to the last muscle; the layer of fat behind it has the same box
 };
 
 /// Thickness of the cortex, mm: a thin shell at the epiphyses, thicker toward the shafts.
@@ -178,14 +179,14 @@ KneeSite KneeSubject::makeSite(const Vec3& p, double reach) const {
   if (s.surface > reach)
     return s;
   s.fascia = s.surface + fasciaDepth(p);
-  s.femur = m_bones.femur(p);
-  s.tibia = m_bones.tibia(p);
-  s.fibula = m_bones.fibula(p);
-  s.patella = m_bones.patella(p);
+  s.femur = m_bones.femur(p, reach);
+  s.tibia = m_bones.tibia(p, reach);
+  s.fibula = m_bones.fibula(p, reach);
+  s.patella = m_bones.patella(p, reach);
   const auto isNearBone = [](double distance) { return distance > -2.0 && distance < 5.0; };
   if (isNearBone(s.femur)) {
     s.intactFemoralCartilage = m_bones.intactFemoralCartilage(p);
-    s.femoralCartilage = m_bones.femoralCartilage(p);
+    s.femoralCartilage = m_bones.applyLesions(s.intactFemoralCartilage, p);
   }
   if (isNearBone(s.tibia))
     s.tibialCartilage = m_bones.tibialCartilage(p);
@@ -275,13 +276,14 @@ void KneeSubject::addMuscles() {
     const auto shape = [belly](const KneeSite& s) {
       constexpr double roughness = 0.9, most = roughness + separation;
       const double distance = belly.distance(s.point);
-      return std::abs(distance) > s.reach + most
-                 ? distance
-                 : distance + roughness * valueNoise(s.point / 8.0, 92);
+      s.muscle = std::abs(distance) > s.reach + most
+                     ? distance
+                     : distance + roughness * valueNoise(s.point / 8.0, 92);
+      return s.muscle;
     };
     addDeepLayer(label, muscleSignal, belly.box, shape);
     addDeepLayer(m_deepFat, deepFatSignal, belly.box,
-                 [shape](const KneeSite& s) { return shape(s) - separation; });
+                 [](const KneeSite& s) { return s.muscle - separation; });
   });
 }
 

@@ -96,8 +96,12 @@ double plateauHeight(const Vec3& p) {
   return -2.6 + slope + bowls + spines + front;
 }
 
-double surfaceNoise(const Vec3& p, std::uint64_t seed) {
-  return 0.35 * valueNoise(p / 7.0, seed) + 0.12 * valueNoise(p / 2.5, seed + 1);
+/// Adds a bone's surface noise to the distance from it. More than `reach` + 6 mm away, where it
+/// neither moves the surface nor affects a layer of the joint, it is omitted.
+double roughen(double distance, const Vec3& p, std::uint64_t seed, double reach) {
+  if (std::abs(distance) > reach + 6.0)
+    return distance;
+  return distance + (0.35 * valueNoise(p / 7.0, seed) + 0.12 * valueNoise(p / 2.5, seed + 1));
 }
 
 } // namespace
@@ -158,8 +162,11 @@ double KneeBones::tibiaField(const Vec3& p) const {
       smoothUnion(smoothUnion(m_tibialShaft.distance(p), tuberosity, 8.0), condyles, 12.0);
   // The outline recedes between the rear parts of the condyles (groove of the PCL).
   const double rearGroove = ellipsoidDistance(p, {0, -34, -6}, {11, 11, 20});
-  return smoothIntersection(smoothDifference(shaft, rearGroove, 6.0), p.z() - plateauHeight(p),
-                            3.5);
+  const double sides = smoothDifference(shaft, rearGroove, 6.0);
+  constexpr double blend = 3.5, lowestPlateau = -10.0; // mm
+  if (p.z() - lowestPlateau + blend < sides)           // far below the plateau
+    return sides;
+  return smoothIntersection(sides, p.z() - plateauHeight(p), blend);
 }
 
 /// Rounded triangle in front; at the rear, two facets meet in a ridge that glides in the groove.
@@ -175,29 +182,29 @@ double KneeBones::patellaField(const Vec3& p) const {
 }
 
 double KneeBones::distance(const Box& box, double (KneeBones::*field)(const Vec3&) const,
-                           std::uint64_t seed, const Vec3& point) const {
+                           std::uint64_t seed, const Vec3& point, double reach) const {
   if (!contains(expandBox(box, maxDistance), point))
     return maxDistance;
-  return firstOrderDistance([&](const Vec3& p) { return (this->*field)(p); }, point) +
-         surfaceNoise(point, seed);
+  return roughen(firstOrderDistance([&](const Vec3& p) { return (this->*field)(p); }, point), point,
+                 seed, reach);
 }
 
-double KneeBones::femur(const Vec3& point) const {
-  return distance({{-43, -36, 0}, {43, 36, 82}}, &KneeBones::femurField, 11, point);
+double KneeBones::femur(const Vec3& point, double reach) const {
+  return distance({{-43, -36, 0}, {43, 36, 82}}, &KneeBones::femurField, 11, point, reach);
 }
 
-double KneeBones::tibia(const Vec3& point) const {
-  return distance({{-41, -33, -66}, {41, 28, 8}}, &KneeBones::tibiaField, 21, point);
+double KneeBones::tibia(const Vec3& point, double reach) const {
+  return distance({{-41, -33, -66}, {41, 28, 8}}, &KneeBones::tibiaField, 21, point, reach);
 }
 
-double KneeBones::fibula(const Vec3& point) const {
+double KneeBones::fibula(const Vec3& point, double reach) const {
   return contains(expandBox(m_fibula.box, maxDistance), point)
-             ? m_fibula.distance(point) + surfaceNoise(point, 31)
+             ? roughen(m_fibula.distance(point), point, 31, reach)
              : maxDistance;
 }
 
-double KneeBones::patella(const Vec3& point) const {
-  return distance(m_patellaBody.box, &KneeBones::patellaField, 41, point);
+double KneeBones::patella(const Vec3& point, double reach) const {
+  return distance(m_patellaBody.box, &KneeBones::patellaField, 41, point, reach);
 }
 
 Vec3 KneeBones::femoralSurface(double x, double angle) const {
@@ -245,7 +252,10 @@ double KneeBones::intactFemoralCartilage(const Vec3& p) const {
 }
 
 double KneeBones::femoralCartilage(const Vec3& p) const {
-  const double intact = intactFemoralCartilage(p);
+  return applyLesions(intactFemoralCartilage(p), p);
+}
+
+double KneeBones::applyLesions(double intact, const Vec3& p) const {
   if (intact == 0.0)
     return 0.0;
   return intact * lesionFactor(fullThicknessLesion, p) * lesionFactor(partialThicknessLesion, p);

@@ -9,7 +9,7 @@ namespace fenestra {
 
 namespace {
 
-/// A cell of the lattice with the values at its corners, x varying fastest.
+/// A cell of the lattice with the values at its corners, z varying fastest.
 struct LatticeCell {
   Size3 lower = Size3::Constant(std::numeric_limits<std::int64_t>::min()); ///< of no cell
   std::uint64_t seed = 0;
@@ -29,7 +29,7 @@ const LatticeCell& findCell(const Size3& lower, std::uint64_t seed) {
   const std::uint64_t first = lower.cast<std::uint64_t>().dot(spread) + seed;
   for (std::uint64_t i = 0; i < cell.values.size(); ++i) {
     const std::uint64_t key =
-        first + (i & 1) * spread.x() + (i >> 1 & 1) * spread.y() + (i >> 2) * spread.z();
+        first + (i >> 2) * spread.x() + (i >> 1 & 1) * spread.y() + (i & 1) * spread.z();
     cell.values[i] = static_cast<double>(mixBits(key) >> 11) * 0x1p-52 - 1.0;
   }
   cell.lower = lower;
@@ -41,6 +41,21 @@ const LatticeCell& findCell(const Size3& lower, std::uint64_t seed) {
 std::int64_t floorToInteger(double x) {
   const auto truncated = static_cast<std::int64_t>(x);
   return truncated - (static_cast<double>(truncated) > x);
+}
+
+/// std::lerp for t from 0 to 1, without its branches, which random signs make slow: as
+/// t * b + (1 - t) * a where the signs differ (or t is 1), and as t * (b - a) + a elsewhere.
+double interpolate(double a, double b, double t) {
+  const double differ = (a * b <= 0.0) | (t >= 1.0);
+  const double value = t * (b - (1.0 - differ) * a) + (1.0 - differ * t) * a;
+  return std::max(std::min(value, std::max(a, b)), std::min(a, b));
+}
+
+/// Interpolates between the first `half` values and the next.
+template <std::size_t half>
+void interpolate(std::array<double, 8>& values, double t) {
+  for (std::size_t i = 0; i < half; ++i)
+    values[i] = interpolate(values[i], values[i + half], t);
 }
 
 /// Two independent normal deviates (Box and Muller 1958).
@@ -58,9 +73,11 @@ double valueNoise(const Vec3& point, std::uint64_t seed) {
   const Vec3 f = point - lower.cast<double>();
   // Smoothstep: weights of the upper lattice points.
   const Vec3 s = f.array().square() * (3.0 - 2.0 * f.array());
-  const auto& values = findCell(lower, seed).values;
-  const auto edge = [&](std::size_t i) { return std::lerp(values[i], values[i + 1], s.x()); };
-  return std::lerp(std::lerp(edge(0), edge(2), s.y()), std::lerp(edge(4), edge(6), s.y()), s.z());
+  std::array<double, 8> values = findCell(lower, seed).values;
+  interpolate<4>(values, s.x());
+  interpolate<2>(values, s.y());
+  interpolate<1>(values, s.z());
+  return values[0];
 }
 
 double normalNoise(std::uint64_t voxel) {

@@ -89,15 +89,30 @@ LoftSection findSection(const std::vector<LoftPiece>& pieces, double z) {
   return {z, piece->center.at(t), piece->radii.at(t).cwiseMax(0.5)};
 }
 
-/// Distance to a tube with nodes as dense as refineTube() makes them.
-double tubeDistance(const std::vector<TubeNode>& nodes, const Vec3& point) {
-  double nearest = infinity;
+/// A tube between two of its nodes.
+struct TubePiece {
+  TubeNode start;
+  Vec3 axis; ///< to the next node
+  double squaredLength, endRadius;
+};
+
+std::vector<TubePiece> makeTubePieces(const std::vector<TubeNode>& nodes) {
+  std::vector<TubePiece> pieces;
   for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
     const Vec3 axis = nodes[i + 1].point - nodes[i].point;
-    const Vec3 offset = point - nodes[i].point;
-    const double t = std::clamp(offset.dot(axis) / axis.squaredNorm(), 0.0, 1.0);
-    const double radius = std::lerp(nodes[i].radius, nodes[i + 1].radius, t);
-    nearest = std::min(nearest, (offset - t * axis).norm() - radius);
+    pieces.push_back({nodes[i], axis, axis.squaredNorm(), nodes[i + 1].radius});
+  }
+  return pieces;
+}
+
+/// Distance to a tube with nodes as dense as refineTube() makes them.
+double tubeDistance(const std::vector<TubePiece>& pieces, const Vec3& point) {
+  double nearest = infinity;
+  for (const TubePiece& piece : pieces) {
+    const Vec3 offset = point - piece.start.point;
+    const double t = std::clamp(offset.dot(piece.axis) / piece.squaredLength, 0.0, 1.0);
+    const double radius = std::lerp(piece.start.radius, piece.endRadius, t);
+    nearest = std::min(nearest, (offset - t * piece.axis).norm() - radius);
   }
   return nearest;
 }
@@ -163,7 +178,10 @@ Solid makeTube(const std::vector<TubeNode>& nodes, const Vec3& stretch) {
     box.extend(node.point + node.radius * stretch);
     node.point = node.point.cwiseQuotient(stretch);
   }
-  return {[=](const Vec3& p) { return tubeDistance(axis, p.cwiseQuotient(stretch)); }, box};
+  return {[stretch, pieces = makeTubePieces(axis)](const Vec3& p) {
+            return tubeDistance(pieces, p.cwiseQuotient(stretch));
+          },
+          box};
 }
 
 Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up) {

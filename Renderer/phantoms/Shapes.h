@@ -21,7 +21,10 @@ inline Box expandBox(const Box& box, double margin) {
   return {box.lower.array() - margin, box.upper.array() + margin};
 }
 inline bool contains(const Box& box, const Vec3& point) {
-  return (point.array() >= box.lower.array()).all() && (point.array() <= box.upper.array()).all();
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(point[axis] >= box.lower[axis] && point[axis] <= box.upper[axis]))
+      return false;
+  return true;
 }
 
 /// A shape with a bounding box, in the world.

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <thread>
 
 namespace fenestra::PhantomShapesTests {
 
@@ -114,6 +115,29 @@ TEST(PhantomNoise, ValueNoiseIsContinuousAndBounded) {
     EXPECT_NEAR(value, valueNoise(p + Vec3::Constant(1e-6), 5), 2e-5);
   }
   EXPECT_NE(valueNoise({0.5, 0.5, 0.5}, 1), valueNoise({0.5, 0.5, 0.5}, 2));
+}
+
+// Threads keep lattice cells by field; 512 seeds apart, fields share their place.
+TEST(PhantomNoise, ValuesDoNotDependOnThreadsAndEarlierPoints) {
+  constexpr std::size_t n = 20000;
+  const auto noise = [](std::size_t i) {
+    const double x = 0.013 * static_cast<double>(i % 1000);
+    return valueNoise({x, 0.7 * x, -x}, 5 + 512 * (i / 1000 % 3));
+  };
+  std::vector<double> forward(n), apart(n);
+  for (std::size_t i = 0; i < n; ++i)
+    forward[i] = noise(i);
+  const auto fill = [&](std::size_t thread) {
+    for (std::size_t i = n; i-- > 0;)
+      if (i % 4 == thread)
+        apart[i] = noise(i);
+  };
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t thread = 0; thread < 4; ++thread)
+      threads.emplace_back(fill, thread);
+  }
+  EXPECT_EQ(forward, apart);
 }
 
 TEST(PhantomNoise, RicianMomentsMatchPublishedValues) {
