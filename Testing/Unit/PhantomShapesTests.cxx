@@ -119,17 +119,17 @@ TEST(PhantomNoise, ValueNoiseIsContinuousAndBounded) {
 
 // Threads keep lattice cells by field; 512 seeds apart, fields share their place.
 TEST(PhantomNoise, ValuesDoNotDependOnThreadsAndEarlierPoints) {
-  constexpr std::size_t n = 20000;
+  constexpr std::size_t n = 300000;
   const auto noise = [](std::size_t i) {
-    const double x = 0.013 * static_cast<double>(i % 1000);
-    return valueNoise({x, 0.7 * x, -x}, 5 + 512 * (i / 1000 % 3));
+    const double x = 0.013 * static_cast<double>(i % 1009);
+    return valueNoise({x, 0.7 * x, -x}, 5 + 512 * (i / 8 % 3));
   };
   std::vector<double> forward(n), apart(n);
   for (std::size_t i = 0; i < n; ++i)
     forward[i] = noise(i);
   const auto fill = [&](std::size_t thread) {
     for (std::size_t i = n; i-- > 0;)
-      if (i % 4 == thread)
+      if (i * 4 / n == thread)
         apart[i] = noise(i);
   };
   {
