@@ -153,14 +153,13 @@ int benchmark(int argc, char** argv) {
   const std::optional<OptionValues> values = parseCommandLine(syntax, argc, argv, 1);
   if (!values)
     return 0;
-  const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
   const std::vector<std::string> scenes = values->list("scenes");
   std::cout << "scene,lightness_mean,lightness_spread,mean_red,mean_green,mean_blue,delta_e,"
                "delta_e_protan,delta_e_deutan,delta_lightness,predicted"
             << std::endl;
-  for (const SceneCase& scene : readScenes(
-           values->text("table").value_or(FENESTRA_APPEARANCE_TABLE),
-           {FENESTRA_REFERENCE, FENESTRA_DATA, values->text("phantoms").value_or(build.string())}))
+  for (const SceneCase& scene :
+       readScenes(values->text("table").value_or(FENESTRA_APPEARANCE_TABLE),
+                  findFolders(values->text("phantoms"))))
     if (scenes.empty() || std::ranges::find(scenes, scene.name) != scenes.end())
       measureScene(scene);
   return 0;

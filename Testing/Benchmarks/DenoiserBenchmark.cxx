@@ -127,19 +127,15 @@ int benchmark(int argc, char** argv) {
   const std::optional<OptionValues> values = parseCommandLine(syntax, argc, argv, 1);
   if (!values)
     return 0;
-  const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
-  const auto folder = [&](const char* name, const std::filesystem::path& otherwise) {
-    return std::filesystem::path(values->text(name).value_or(otherwise.string()));
-  };
-  const ReferenceSettings wanted{.folder = folder("references", build / "filter"),
-                                 .samples = values->integer("referencesamples").value_or(1024)};
+  const ReferenceSettings wanted{
+      .folder = values->text("references").value_or(FENESTRA_BENCHMARK_FOLDER "/filter"),
+      .samples = values->integer("referencesamples").value_or(1024)};
   const std::vector<std::string> scenes = values->list("scenes");
   std::cout << "scene,samples,relmse_raw,relmse_denoised,gain,estimated_over_true_error,"
                "efficiency_gain,render_cpu_seconds,features_cpu_seconds,denoise_cpu_seconds"
             << std::endl;
-  for (const SceneCase& scene :
-       readScenes(folder("table", FENESTRA_DENOISER_TABLE),
-                  {FENESTRA_REFERENCE, FENESTRA_DATA, folder("phantoms", build)}))
+  for (const SceneCase& scene : readScenes(values->text("table").value_or(FENESTRA_DENOISER_TABLE),
+                                           findFolders(values->text("phantoms"))))
     if (scenes.empty() || std::ranges::find(scenes, scene.name) != scenes.end())
       measureScene(scene, *values, wanted);
   return 0;

@@ -1,17 +1,15 @@
-// Error against time over scenes and modes (see README.md in this folder).
+// Error against time over scenes and modes (see README.md in this folder). Prints CSV, one row per
+// curve, and the points of the curves on standard error.
 
+#include "Curve.h"
 #include "Program.h"
-#include "Report.h"
 
 #include "base/Error.h"
 #include "program/CommandLine.h"
 
 #include <algorithm>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <sstream>
-#include <thread>
 
 namespace fenestra::benchmarks {
 namespace {
@@ -24,20 +22,16 @@ const Option optionTable[] = {
     {"seeds", "N", group, "Maximum renders per point, within the budget [3]",
      ValueSpec::integer(1, 1000)},
     {"threads", "K", group, "Threads per render [all]", ValueSpec::integer(1, 1024)},
-    {"size", "WxH", group, "Image size in pixels [from the table]"},
     {"noise", "E", group, "Noise target of new references [0.03]", ValueSpec::number(1e-4, 1.0)},
-    {"limit", "SECONDS", group, "Time limit of a new reference [1800]",
-     ValueSpec::number(1e-3, 1e6)},
     {"references", "DIR", group, "Cache of references [benchmarks/references of the build]"},
     {"phantoms", "DIR", group, "Folder of the phantoms [benchmarks of the build]"},
     {"table", "FILE", group, "Table of scenes [scenes.txt of the source tree]"},
-    {"output", "DIR", group,
-     "Report folder; results of other scenes and modes in it are kept [benchmarks/report of "
-     "the build]"},
 };
 
 const CommandSyntax syntax = {
     "EfficiencyBenchmark", "Measures relMSE against CPU seconds.", {}, optionTable};
+
+constexpr double quotedRelMse = 1e-3; ///< at which efficiency is printed
 
 struct Options {
   std::vector<SceneCase> table;
@@ -46,29 +40,12 @@ struct Options {
   CurveSettings curve;
   ReferenceSettings reference;
   int threads = 0;
-  std::optional<std::pair<int, int>> size;
-  std::filesystem::path output;
 };
 
-/// Width and height from --size.
-std::optional<std::pair<int, int>> parseSize(const OptionValues& values) {
-  const auto text = values.text("size");
-  if (!text)
-    return std::nullopt;
-  int width = 0, height = 0;
-  if (std::sscanf(text->c_str(), "%dx%d", &width, &height) != 2 || width < 1 || height < 1)
-    throw usageError("--size: expected WIDTHxHEIGHT in pixels, got '" + *text + "'");
-  return std::pair(width, height);
-}
-
 Options parseOptions(const OptionValues& values) {
-  const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
-  const auto folder = [&](const char* name, const std::filesystem::path& otherwise) {
-    return std::filesystem::path(values.text(name).value_or(otherwise.string()));
-  };
   Options options;
-  options.table = readScenes(folder("table", FENESTRA_BENCHMARK_TABLE),
-                             {FENESTRA_REFERENCE, FENESTRA_DATA, folder("phantoms", build)});
+  options.table = readScenes(values.text("table").value_or(FENESTRA_BENCHMARK_TABLE),
+                             findFolders(values.text("phantoms")));
   options.scenes = values.list("scenes");
   for (const std::string& name : options.scenes)
     if (std::ranges::find(options.table, name, &SceneCase::name) == options.table.end())
@@ -81,53 +58,50 @@ Options parseOptions(const OptionValues& values) {
   options.curve.budget = values.number("budget").value_or(options.curve.budget);
   options.curve.seeds = static_cast<int>(values.integer("seeds").value_or(3));
   options.reference.noise = values.number("noise").value_or(options.reference.noise);
-  options.reference.seconds = values.number("limit").value_or(options.reference.seconds);
-  options.reference.folder = folder("references", build / "references");
+  options.reference.folder =
+      values.text("references").value_or(FENESTRA_BENCHMARK_FOLDER "/references");
   options.threads = static_cast<int>(values.integer("threads").value_or(0));
-  options.size = parseSize(values);
-  options.output = folder("output", build / "report");
   return options;
 }
 
-std::vector<CurveRecord> measureScene(const SceneCase& sceneCase, const Options& options) {
+void printPoints(const std::string& name, const std::vector<Point>& curve) {
+  for (const Point& point : curve)
+    std::cerr << std::setprecision(3) << name << ": " << point.samples << " samples, "
+              << point.seeds << " seeds, " << point.cpuSeconds << " CPU s, relMSE " << point.relMse
+              << " ± " << point.spread << std::endl;
+}
+
+/// Bias: that of the point with the most samples.
+void printRow(const std::string& scene, const Mode& mode, const Reference& reference,
+              const std::vector<Point>& curve) {
+  const std::optional<Efficiency> efficiency = findEfficiency(curve, quotedRelMse);
+  const Point& last = curve.back();
+  std::cout << std::setprecision(3) << scene << ',' << mode.name << ',' << reference.source << ','
+            << reference.relMse << ',';
+  if (efficiency)
+    std::cout << efficiency->value << ',' << efficiency->relMse;
+  else
+    std::cout << ','; // no measurable error
+  std::cout << ',' << last.samples << ',' << 100.0 * last.bias << ',' << 100.0 * last.biasError
+            << std::endl;
+}
+
+void measureScene(const SceneCase& sceneCase, const Options& options) {
   if (!sceneCase.missing.empty()) {
     std::cerr << sceneCase.name << ": not present: " << sceneCase.missing << std::endl;
-    return {{sceneCase.name, "", "", 0.0}};
+    return;
   }
-  RenderOptions wanted = sceneCase.options();
-  if (options.size)
-    std::tie(wanted.scene.width, wanted.scene.height) = *options.size;
+  const RenderOptions wanted = sceneCase.options();
   const PreparedScene scene(wanted.scene);
   RenderSettings settings = makeSettings(wanted, scene.background());
   settings.threads = options.threads;
   const Reference reference = getOrRenderReference(sceneCase, scene, settings, options.reference);
-  std::vector<CurveRecord> curves;
   for (const Mode* mode : options.modes) {
-    curves.push_back({sceneCase.name, mode->name, reference.source, reference.relMse,
-                      measureCurve(*mode, scene, settings, reference.image, options.curve)});
-    const Point& last = curves.back().points.back();
-    std::cout << std::setprecision(3) << sceneCase.name << ", " << mode->name << ": "
-              << last.samples << " samples, " << last.cpuSeconds << " CPU s, relMSE " << last.relMse
-              << ", bias " << 100.0 * last.bias << " ± " << 100.0 * last.biasError << " %"
-              << std::endl;
+    const std::vector<Point> curve =
+        measureCurve(*mode, scene, settings, reference.image, options.curve);
+    printPoints(sceneCase.name + ", " + mode->name, curve);
+    printRow(sceneCase.name, *mode, reference, curve);
   }
-  return curves;
-}
-
-std::string processorName() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("model name"))
-      return line.substr(line.find(':') + 2);
-  return "an unknown CPU";
-}
-
-std::string makeNotes(const Options& options) {
-  std::ostringstream out;
-  out << "Last run on " << processorName() << ", " << std::thread::hardware_concurrency()
-      << " threads, with " << options.curve.budget << " CPU seconds per curve and up to "
-      << options.curve.seeds << " seeds per point.";
-  return out.str();
 }
 
 int benchmark(int argc, char** argv) {
@@ -135,19 +109,13 @@ int benchmark(int argc, char** argv) {
   if (!values)
     return 0;
   const Options options = parseOptions(*values);
-  std::vector<std::string> names;
+  std::cout << "scene,mode,reference,reference_relmse,efficiency,at_relmse,samples,bias_percent,"
+               "bias_error_percent"
+            << std::endl;
   for (const SceneCase& scene : options.table)
-    names.push_back(scene.name);
-  for (const SceneCase& scene : options.table) {
-    if (!options.scenes.empty() &&
-        std::ranges::find(options.scenes, scene.name) == options.scenes.end())
-      continue;
-    // Written after each scene, so that an interrupted run keeps its finished scenes.
-    writeReport(options.output,
-                mergeCurves(readCurves(options.output), measureScene(scene, options), names),
-                makeNotes(options));
-  }
-  std::cout << (options.output / "README.md").string() << std::endl;
+    if (options.scenes.empty() ||
+        std::ranges::find(options.scenes, scene.name) != options.scenes.end())
+      measureScene(scene, options);
   return 0;
 }
 

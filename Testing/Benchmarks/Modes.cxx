@@ -26,31 +26,30 @@ Film renderMarching(const SceneView& scene, const RenderSettings& settings, doub
 }
 
 constexpr Mode table[] = {
-    {"product", "the default of `fenestra`",
-     [](const SceneView& scene, RenderSettings settings) {
-       return renderByFenestra(scene, settings);
-     }},
+    // the default of `fenestra`
+    {"product", [](const SceneView& scene,
+                   RenderSettings settings) { return renderByFenestra(scene, settings); }},
+    // like product, with a noise target: after a pilot of 16 samples, noisier pixels get more
     {"adaptive",
-     "like product, with a noise target: after a pilot of 16 samples, noisier pixels get more",
      [](const SceneView& scene, RenderSettings settings) {
        settings.noise = 1e-6; // too low to be met: the sample count ends the render
        return renderByFenestra(scene, settings);
      }},
-    {"scalar", "the scalar integrator: null collisions in a majorant grid, independent samples",
+    // the scalar integrator: null collisions in a majorant grid, independent samples
+    {"scalar",
      [](const SceneView& scene, RenderSettings settings) {
        settings.integrator = Integrator::scalar;
        return renderByFenestra(scene, settings);
      }},
-    {"global", "like scalar, with one majorant for the volume",
+    // like scalar, with one majorant for the volume
+    {"global",
      [](const SceneView& scene, RenderSettings settings) { return renderGlobal(scene, settings); }},
-    {"marching", "like scalar, with fixed steps of one voxel: biased",
-     [](const SceneView& scene, RenderSettings settings) {
-       return renderMarching(scene, settings, 1.0);
-     }},
-    {"marching-half", "like scalar, with fixed steps of half a voxel: biased",
-     [](const SceneView& scene, RenderSettings settings) {
-       return renderMarching(scene, settings, 0.5);
-     }},
+    // like scalar, with fixed steps of one voxel: biased
+    {"marching", [](const SceneView& scene,
+                    RenderSettings settings) { return renderMarching(scene, settings, 1.0); }},
+    // half a voxel
+    {"marching-half", [](const SceneView& scene,
+                         RenderSettings settings) { return renderMarching(scene, settings, 0.5); }},
 };
 
 } // namespace

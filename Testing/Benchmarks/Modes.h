@@ -10,12 +10,11 @@ namespace fenestra::benchmarks {
 
 struct Mode {
   const char* name;
-  const char* description; ///< for the report, part of a sentence
   /// Renders with the samples and seed of the settings; other limits are ignored.
   Film (*render)(const SceneView& scene, RenderSettings settings);
 };
 
-/// All modes, in the report's order. Add new ones to the table in Modes.cxx.
+/// All modes. Add new ones to the table in Modes.cxx.
 std::span<const Mode> modes();
 
 /// Throws Error (usage) for an unknown name.

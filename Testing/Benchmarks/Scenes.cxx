@@ -3,6 +3,7 @@
 #include "base/Error.h"
 #include "program/CommandLine.h"
 
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -114,6 +115,15 @@ private:
 };
 
 } // namespace
+
+Folders findFolders(const std::optional<std::string>& phantoms) {
+  const auto find = [](const char* variable, const char* built) {
+    const char* const set = std::getenv(variable);
+    return std::filesystem::path(set ? set : built);
+  };
+  return {find("FENESTRA_REFERENCE", FENESTRA_REFERENCE), find("FENESTRA_DATA", FENESTRA_DATA),
+          phantoms.value_or(FENESTRA_BENCHMARK_FOLDER)};
+}
 
 RenderOptions SceneCase::options() const {
   Arguments words = {"fenestra"};

@@ -4,6 +4,7 @@
 #include "program/RenderOptions.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,10 @@ namespace fenestra::benchmarks {
 struct Folders {
   std::filesystem::path reference, data, phantoms;
 };
+
+/// Folders of the build. The environment variables FENESTRA_REFERENCE and FENESTRA_DATA select
+/// others, and `phantoms` those of the phantoms.
+Folders findFolders(const std::optional<std::string>& phantoms);
 
 enum class ReferenceSource {
   external, ///< other renderers ("independent" in the table): FILE_best.exr and FILE_best_se.exr
