@@ -6,13 +6,12 @@
 //   FENESTRA_SEED          number that selects other seeds
 //   FENESTRA_COMBINATIONS  number of combinations to test of the matrix, for slow builds
 //   FENESTRA_MUTATIONS     comma-separated names of the mutations to test
-//   FENESTRA_REPORT        folder for fragments of the report
+//   FENESTRA_MUTATION_LIST another path of mutations.json
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -64,14 +63,6 @@ inline std::uint64_t seedBase() {
 /// Seed of a test for this run's seed base; `seed` itself for base 1.
 inline std::uint64_t shiftSeed(std::uint64_t seed) {
   return seed + 1000003 * (seedBase() - 1);
-}
-
-inline std::optional<std::filesystem::path> reportFolder() {
-  const char* folder = std::getenv("FENESTRA_REPORT");
-  if (!folder)
-    return std::nullopt;
-  std::filesystem::create_directories(folder);
-  return folder;
 }
 
 } // namespace fenestra::testing

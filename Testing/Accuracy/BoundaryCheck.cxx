@@ -1,5 +1,16 @@
 // Independent check of the clipping surface on twelve views of a knee, a liver and a vertebra.
-// Prints Testing/Report/boundary-views.csv; the README there explains the columns.
+// Prints CSV:
+//
+// outline points: found by bisection between rays that hit and that miss the focus.
+// jumps: outline points where one part of the focus occludes another, 2 mm or more in front of it;
+//   excluded from gap and cut.
+// gap, cut: distances in mm along the ray at the outline: from the last point of the focus to the
+//   surface just outside (within 1e-7 pixels), and by which the surface is behind that point.
+// shown: rays on the focus with at most 0.2 mm, or half of the longest label voxel edge, of other
+//   tissue in front of it. shown elsewhere: within half a voxel, without the rays at jumps.
+// worst: the worst of the views, separately for each column.
+//
+// Goals for the exact boundary: a gap of at most 0.05 mm (p95) and 0.2 mm (max), 99.9 % shown.
 //
 //     BoundaryCheck [PIXELS [VIEWS]]     (default: 512 per side, 12 views)
 

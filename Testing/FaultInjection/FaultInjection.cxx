@@ -13,7 +13,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <thread>
@@ -154,16 +153,11 @@ struct Tally {
   }
 };
 
-/// Writes crashes after failed allocations, by function, to fault-injection-crashes.csv in the
-/// folder FENESTRA_REPORT if that is set.
-void writeCrashes(const std::map<std::string, Tally>& crashes) {
-  const char* const folder = std::getenv("FENESTRA_REPORT");
-  if (!folder)
-    return;
-  std::ofstream file(std::filesystem::path(folder) / "fault-injection-crashes.csv");
-  file << "function,runs,first run\n";
+/// Prints crashes after failed allocations, by function.
+void printCrashes(const std::map<std::string, Tally>& crashes) {
   for (const auto& [function, tally] : crashes)
-    file << function << ',' << tally.runs << ',' << tally.first << '\n';
+    std::fprintf(stderr, "%ld crashes after a failed allocation in %s, first in %s\n", tally.runs,
+                 function.c_str(), tally.first.c_str());
 }
 
 /// Table row: totals for a request and a kind of fault.
@@ -208,7 +202,7 @@ bool print(const std::vector<Case>& cases, const std::vector<Result>& results) {
       std::exchange(row, {}).print(testCase.subject->request->name,
                                    testCase.kind->word + (value.empty() ? "" : " " + value));
   }
-  writeCrashes(crashes);
+  printCrashes(crashes);
   return passed;
 }
 

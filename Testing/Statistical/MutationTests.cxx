@@ -45,7 +45,8 @@ bool isSelected(const std::string& name) {
 }
 
 std::vector<Mutation> readMutations() {
-  std::ifstream file(FENESTRA_MUTATION_LIST);
+  const char* const list = std::getenv("FENESTRA_MUTATION_LIST");
+  std::ifstream file(list ? list : FENESTRA_MUTATION_LIST);
   std::vector<Mutation> mutations;
   for (const auto& entry : nlohmann::json::parse(file))
     if (isSelected(entry.at("name")))
@@ -65,17 +66,6 @@ struct ActiveMutation {
   explicit ActiveMutation(std::string_view name) { activeMutation = mutationKey(name); }
   ~ActiveMutation() { activeMutation = 0; }
 };
-
-/// Writes mutations.csv if a report is requested (RunSettings.h).
-void writeRecord(const std::vector<Mutation>& mutations) {
-  const std::optional<std::filesystem::path> folder = reportFolder();
-  if (!folder)
-    return;
-  std::ofstream csv(*folder / "mutations.csv");
-  csv << "mutation,why,found in combination,probability\n";
-  for (const Mutation& m : mutations)
-    csv << m.name << ",\"" << m.why << "\",\"" << m.foundIn << "\"," << m.probability << '\n';
-}
 
 /// p-value of the standard errors estimated by images of sixteen samples per pixel.
 double computeErrorProbability(Integrator integrator) {
@@ -161,7 +151,6 @@ TEST(Mutations, AreAllFound) {
             << std::ranges::count_if(mutations,
                                      [](const Mutation& m) { return !m.foundIn.empty(); })
             << " of " << mutations.size() << '\n';
-  writeRecord(mutations);
 }
 
 } // namespace

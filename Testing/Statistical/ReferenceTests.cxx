@@ -19,7 +19,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
 
 namespace fenestra::testing {
 namespace {
@@ -74,15 +73,6 @@ bool hasReferences() {
   return std::filesystem::exists(std::string(FENESTRA_REFERENCE) + "/S1.arguments");
 }
 
-/// Appends a row to references.csv, if a report is requested; `labels`: "renderer,scene";
-/// renderers are "product" (Fenestra) and "oracle".
-void appendRecord(const std::string& labels, const ZStatistics& z) {
-  if (const std::optional<std::filesystem::path> folder = reportFolder())
-    std::ofstream(*folder / "references.csv", std::ios::app)
-        << std::setprecision(3) << labels << ',' << z.count << ',' << z.mean << ',' << z.deviation
-        << ',' << z.imageMean[0] << ',' << z.imageMean[1] << ',' << z.imageMean[2] << '\n';
-}
-
 /// Bounds on the distribution of z over tiles: four standard errors of each value, for S2, which
 /// fills three quarters of its image.
 struct Bounds {
@@ -90,8 +80,7 @@ struct Bounds {
   double mean, deviation;
 };
 
-void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& bounds,
-                     const std::string& label) {
+void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& bounds) {
   const std::string name = c.name;
   Image reference = readImage(name + "_best.exr");
   attachError(reference, readImage(name + "_best_se.exr"));
@@ -102,7 +91,6 @@ void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& b
   EXPECT_NEAR(comparison.z->mean, 0.0, bounds.mean);
   EXPECT_NEAR(comparison.z->deviation, 1.0, bounds.deviation);
   EXPECT_LT(comparison.z->imageMean.abs().maxCoeff(), 3.0);
-  appendRecord(label, *comparison.z);
   if (::testing::Test::HasFailure())
     writeImage(differenceImage(tiles, reference), {},
                std::filesystem::temp_directory_path() / (name + "-difference.png"),
@@ -119,8 +107,7 @@ TEST_P(Reference, ImageAgreesWithinErrors) {
   const Bounds bounds = slowdownFactor() > 1 ? Bounds{16, 0.3, 0.2}
                         : isLongRun()        ? Bounds{1, 0.02, 0.03}
                                              : Bounds{4, 0.07, 0.05};
-  expectAgreement(renderReference(GetParam()), GetParam(), bounds,
-                  std::string("product,") + GetParam().name);
+  expectAgreement(renderReference(GetParam()), GetParam(), bounds);
 }
 
 std::uint64_t chooseSamples(std::uint64_t few, std::uint64_t many) {
@@ -155,8 +142,7 @@ TEST_P(OracleReference, ImageAgreesWithinErrors) {
   if (!hasReferences())
     GTEST_SKIP() << "no reference images at " << FENESTRA_REFERENCE;
   const Bounds bounds = isLongRun() ? Bounds{4, 0.07, 0.05} : Bounds{16, 0.3, 0.2};
-  expectAgreement(toImage(renderOracle(GetParam())), GetParam(), bounds,
-                  std::string("oracle,") + GetParam().name);
+  expectAgreement(toImage(renderOracle(GetParam())), GetParam(), bounds);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, OracleReference,
