@@ -2,14 +2,21 @@
 # Builds DIR/fenestra-VERSION-linux-MACHINE.tar.gz: the program with its libraries and loader, for any Linux on this
 # kind of machine, with licenses and a bill of materials (SPDX 2.3). The same commit and Debian packages give the same
 # bytes in any folder. release.md describes the contents.
-# usage: bash Resources/release.sh DIR [BUILD]
-#   BUILD  folder of a Release build that provides the program; without it, build/release is built
+# usage: bash Resources/release.sh [--stale-evidence] DIR [BUILD]
+#   BUILD             folder of a Release build that provides the program; without it, build/release is built
+#   --stale-evidence  for tests of the archive: also if sources are newer than the measurements that the pages cite
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 umask 022
 export LC_ALL=C # for the order of names
 parts=$top/Resources/release
-[ $# -ge 1 ] || die "usage: release.sh DIR [BUILD]"
+if [ "${1:-}" = --stale-evidence ]; then
+  shift
+else
+  bash "$top/Testing/evidence.sh" check ||
+    die "sources are newer than the measurements that the pages cite: run bash Testing/long.sh record"
+fi
+[ $# -ge 1 ] || die "usage: release.sh [--stale-evidence] DIR [BUILD]"
 out=$(mkdir -p "$1" && cd "$1" && pwd) || die "cannot make folder $1"
 epoch=${SOURCE_DATE_EPOCH:-$(git -C "$top" log -1 --format=%ct 2>/dev/null)} ||
   die "SOURCE_DATE_EPOCH: is not set; outside a git checkout it gives the date of the archive"

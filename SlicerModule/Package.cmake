@@ -18,8 +18,8 @@ install(CODE "
   set(prefix \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\")
   set(made \"${CMAKE_CURRENT_BINARY_DIR}/archive\")
   file(REMOVE_RECURSE \"\${made}\" \"\${prefix}/${archive_install}\")
-  execute_process(COMMAND bash \"${CMAKE_CURRENT_LIST_DIR}/../Resources/release.sh\" \"\${made}\"
-    \"$<TARGET_FILE_DIR:fenestra>/..\" COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND bash \"${CMAKE_CURRENT_LIST_DIR}/../Resources/release.sh\" --stale-evidence
+    \"\${made}\" \"$<TARGET_FILE_DIR:fenestra>/..\" COMMAND_ERROR_IS_FATAL ANY)
   file(GLOB archive \"\${made}/*.tar.gz\")
   file(ARCHIVE_EXTRACT INPUT \"\${archive}\" DESTINATION \"\${prefix}/${Slicer_INSTALL_LIB_DIR}\")
   string(REGEX REPLACE \".*/|[.]tar[.]gz$\" \"\" folder \"\${archive}\")

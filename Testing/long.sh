@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
-# Runs the long version of all checks and writes their record, Testing/Report. Takes several hours.
-# usage: bash Testing/long.sh [STAGE...]
+# Runs the long version of all checks. Takes several hours.
+# usage: bash Testing/long.sh [STAGE...] | record [PART...]
 # Stages; without arguments, all of the first group run in this order:
 #   accuracy      statistical, stress and regression tests with large sample counts, in Release
 #   seeds         the short matrix with twenty seed bases, on every instruction set
-#   mutations     mutation testing of the renderer
 #   instructions  statistical tests and mutation testing on every instruction set
 #   asan          all tests under AddressSanitizer and UndefinedBehaviorSanitizer, every access checked
 #   tsan          all tests under ThreadSanitizer, with an instrumented oneTBB
@@ -14,31 +13,26 @@
 #   checkpoints   200 kills of a render with a checkpoint file, an image merged from 16 shards, and images
 #                 by up to 7 ranks of mpirun
 #   batch         a batch of 12 cases, killed halfway and resumed; jobs on a single-node Slurm cluster
-#   paths         CPU instructions per path, compared with Testing/Benchmarks/Report
+#   paths         CPU instructions per path, compared with Testing/Benchmarks/instructions.csv
 #   package       the archive in a root with only Busybox, in Debian 11, in the extension's package; a
 #                 reproducible build; the Debian package in lintian
 # Only if named as an argument:
 #   fuzz          10^6 executions of every fuzz target, at most an hour each, and 10^4 corrupted files
 #                 through the sandboxed reader of DICOM and transform files
 #   boundary      the boundary of the clipping surface on subpixel rays
-# Each stage replaces its own CSV files of the record; Testing/Report/README.md, the summary, is edited by
-# hand. Logs of failures are in build/report.
+# record measures what README and pages cite, in 70 minutes on two cores, or its parts (matrix, mutations, denoiser,
+# efficiency; figures only if named), and writes Testing/Report and the generated parts of the pages. Commit sources
+# before. FENESTRA_BUILD selects a finished build.
+# Logs and tables are in build/report.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
-record=$top/Testing/Report
 logs=$top/build/report
 labels=(unit statistical stress regression cli slicer)
 sets=(AVX3 AVX2 SSE4 SCALAR) # instruction sets, as named by Highway
 
-# store FILE COMMAND...: replaces a file of the record by the output of a command, unless that is empty or the
-# command was skipped (exit status 77). Returns its exit status.
-store() {
-  local file=$record/$1 status=0
-  shift
-  "$@" >"$file.tmp" || status=$?
-  if [ $status -ne 77 ] && [ -s "$file.tmp" ]; then mv "$file.tmp" "$file"; fi
-  rm -f "$file.tmp"
-  return $status
+# print_table NAME COMMAND...: prints a table and keeps it as NAME.csv.
+print_table() {
+  "${@:2}" | tee "$logs/$1.csv"
 }
 
 # print_counts LOG START: prints CSV cells: tests passed, skipped, failed, and seconds since START.
@@ -64,10 +58,7 @@ run_labels() {
 
 stage_accuracy() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
-  echo 'renderer,scene,values,mean of z,standard deviation of z,z of red mean,z of green mean,z of blue mean' \
-    >"$record/references.csv"
-  FENESTRA_LONG=1 FENESTRA_REPORT=$record store accuracy.csv run_labels "$top/build" \
-    statistical stress regression
+  FENESTRA_LONG=1 print_table accuracy run_labels "$top/build" statistical stress regression
 }
 
 # has_instructions SET: true if programs can be pinned to an instruction set on this machine.
@@ -103,25 +94,8 @@ stage_seeds() {
     has_instructions "$name" || continue
     seq 20 | top=$top rows=$rows xargs -P "$(nproc)" -I{} bash -c "write_seed_row $name {}"
   done
-  store seeds.csv print_seeds "$rows"
+  print_table seeds print_seeds "$rows"
   rm -r "$rows"
-}
-
-# build_mutations: builds the program of run_mutations.
-build_mutations() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
-  cmake --build "$top/build" --target MutationTests
-}
-
-# run_mutations LOG: tests all mutations, on FENESTRA_INSTRUCTIONS if that is set.
-run_mutations() {
-  "$top/build/bin/MutationTests" >"$1" 2>&1
-}
-
-stage_mutations() {
-  build_mutations
-  FENESTRA_REPORT=$record run_mutations "$logs/mutations.log" ||
-    say "some mutations were not found: see $logs/mutations.log"
 }
 
 # run_instructions: prints a table of the statistical tests and mutations on each instruction set.
@@ -136,14 +110,16 @@ run_instructions() {
       --output-on-failure >"$log" 2>&1 || say "some tests failed on $name: see $log" >&2
     row=$(print_counts "$log" "$start")
     log=$logs/mutations-$name.log
-    FENESTRA_INSTRUCTIONS=$name run_mutations "$log" || say "some mutations were not found on $name: see $log" >&2
+    FENESTRA_INSTRUCTIONS=$name "$top/build/bin/MutationTests" >"$log" 2>&1 ||
+      say "some mutations were not found on $name: see $log" >&2
     printf '%s,%s,%s\n' "$name" "$row" "$(sed -n 's/^mutations found: //p' "$log")"
   done
 }
 
 stage_instructions() {
-  build_mutations
-  store instruction-sets.csv run_instructions
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
+  cmake --build "$top/build" --target MutationTests
+  print_table instruction-sets run_instructions
 }
 
 # Sanitizers check memory accesses and threads, not errors of the result, so fewer samples suffice:
@@ -154,7 +130,7 @@ stage_asan() {
   (cd "$top" && cmake --preset asan-ubsan -DFENESTRA_CHECK_ACCESSES=ON >/dev/null &&
     cmake --build build-asan-ubsan)
   LSAN_OPTIONS="suppressions=$top/Testing/lsan.supp" FENESTRA_BRIEF=4 FENESTRA_COMBINATIONS=24 \
-    store address-sanitizer.csv run_labels "$top/build-asan-ubsan" "${labels[@]}"
+    print_table address-sanitizer run_labels "$top/build-asan-ubsan" "${labels[@]}"
 }
 
 # build_tbb: builds oneTBB with ThreadSanitizer, which cannot see the synchronization of Debian's library. Prints its
@@ -182,14 +158,14 @@ stage_tsan() {
   local tbb
   tbb=$(build_tbb)
   LD_LIBRARY_PATH=$tbb TSAN_OPTIONS=halt_on_error=1 FENESTRA_BRIEF=4 FENESTRA_COMBINATIONS=24 \
-    store thread-sanitizer.csv run_labels "$top/build-tsan" "${labels[@]}"
+    print_table thread-sanitizer run_labels "$top/build-tsan" "${labels[@]}"
 }
 
 stage_clang() {
   install_packages clang
   (cd "$top" && cmake --preset dev -B build-clang -DCMAKE_CXX_COMPILER=clang++ >/dev/null &&
     cmake --build build-clang --target all MicroBenchmarks ChangeBenchmark LoadingBenchmark)
-  store clang.csv run_labels "$top/build-clang" "${labels[@]}"
+  print_table clang run_labels "$top/build-clang" "${labels[@]}"
 }
 
 stage_headers() {
@@ -203,10 +179,10 @@ stage_faults() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
   local program=$top/build/bin/fenestra log
   log=$logs/fault-injection.log
-  FENESTRA_REPORT=$record store fault-injection.csv "$top/build/bin/FaultInjection" "$program" 2> >(tee "$log" >&2) ||
+  print_table fault-injection "$top/build/bin/FaultInjection" "$program" 2> >(tee "$log" >&2) ||
     say "faults violate an invariant: see $log"
   log=$logs/corrupted-files.log
-  store corrupted-files.csv "$top/build/bin/CorruptedFiles" "$program" 1 20000 2> >(tee "$log" >&2) ||
+  print_table corrupted-files "$top/build/bin/CorruptedFiles" "$program" 1 20000 2> >(tee "$log" >&2) ||
     say "corrupted files violate an invariant: see $log"
 }
 
@@ -265,7 +241,7 @@ stage_package() {
 
 stage_boundary() {
   (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target BoundaryCheck)
-  store boundary-views.csv "$top/build/bin/BoundaryCheck" 256 12
+  print_table boundary-views "$top/build/bin/BoundaryCheck" 256 12
 }
 
 stage_fuzz() {
@@ -276,12 +252,27 @@ stage_fuzz() {
     say "corrupted files are neither read nor rejected: $logs/sandbox.log"
 }
 
+# measure_record [PART...]: measures with one build and stores the results.
+measure_record() {
+  local folder=${FENESTRA_BUILD:-$top/build}
+  if [ -z "${FENESTRA_BUILD:-}" ]; then
+    build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
+    cmake --build "$folder" --target MutationTests DenoiserBenchmark AppearanceBenchmark
+  fi
+  rm -rf "$logs/record"
+  bash "$top/Testing/Report/measure.sh" "$folder" "$logs/record" "$@" || say "not everything was measured (see above)"
+  bash "$top/Testing/evidence.sh" store "$logs/record"
+}
+
 mkdir -p "$logs"
-install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev lld
-[ $# -gt 0 ] || set -- accuracy seeds mutations instructions asan tsan clang headers faults checkpoints batch paths \
-  package
+[ -n "${FENESTRA_BUILD:-}" ] ||
+  install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev lld
+if [ "${1:-}" = record ]; then
+  measure_record "${@:2}"
+  exit
+fi
+[ $# -gt 0 ] || set -- accuracy seeds instructions asan tsan clang headers faults checkpoints batch paths package
 for name in "$@"; do
   say "$name"
   "stage_$name"
 done
-say "The record is $record/README.md"

@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Renders focus segments of real volumes in their library colors, each beside a simulation of deuteranopia.
-# Writes section "materials" of README.md, with measured contrasts if AppearanceBenchmark is built
-# (Testing/Benchmarks/appearance.sh builds it). usage: bash Resources/figures/materials.sh
+# Writes section "materials" of README.md, with contrasts measured by AppearanceBenchmark, which must be built beside
+# the program. usage: bash Resources/figures/materials.sh
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 page=$out/materials.md
 size=${SIZE:-1024}
 samples=${SAMPLES:-32}
-benchmark=$top/build/bin/AppearanceBenchmark
+benchmark=$(dirname "$fenestra")/AppearanceBenchmark
+[ -x "$benchmark" ] || die "$benchmark: not found; build it"
 [ -e "$data" ] || die "$data: not found; set FENESTRA_DATA to the folder of volumes"
 
 abdomen="$data/abdomen_ct_totalseg/ct.nii.gz --segmentation $data/abdomen_ct_totalseg/seg_multiorgan.nii.gz"
@@ -24,14 +25,11 @@ for normal, protan and deutan vision, and ΔL*. The targets are 20, 12, 12 and 8
 END
 
 # measure_contrast "ARGUMENTS": prints ΔE*ab for normal, protan and deutan vision, and ΔL* of the image, within
-# 0.6 (appearance-scenes.txt); a dash without the benchmark.
+# 0.6 (appearance-scenes.txt).
 measure_contrast() {
-  local cells="" table=$out/materials-scene.txt
-  if [ -x "$benchmark" ]; then
-    echo "this product $1 --samples 8 --size 512x512" >"$table"
-    cells=$("$benchmark" --table "$table" | awk -F , 'NR == 2 { print $7 ", " $8 ", " $9 " and " $10 }')
-  fi
-  echo "${cells:--}"
+  local table=$out/materials-scene.txt
+  echo "this product $1 --samples 8 --size 512x512" >"$table"
+  "$benchmark" --table "$table" | awk -F , 'NR == 2 { print $7 ", " $8 ", " $9 " and " $10 }'
 }
 
 # show NAME TITLE "TEXT" "ARGUMENTS": renders an image and its simulation, and adds them to the page.

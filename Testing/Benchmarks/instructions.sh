@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds Release, counts instructions per path (callgrind, AVX2, one thread), and compares the counts with
-# Testing/Benchmarks/Report/instructions.csv. Exits with status 1 and names each scene that needs over 3 %
+# Testing/Benchmarks/instructions.csv. Exits with status 1 and names each scene that needs over 3 %
 # more. Takes about three minutes; also on a busy machine.
 # usage: bash Testing/Benchmarks/instructions.sh [--record | --program FILE]
 #   --record        stores the counts as the new record, even if they are worse
@@ -12,7 +12,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../../Resources/setup.sh"
 folder=${FENESTRA_BUILD:-$top/build}
 reference=${FENESTRA_REFERENCE:-$top/../shared/reference}
 work=$folder/benchmarks/instructions
-record=$top/Testing/Benchmarks/Report/instructions.csv
+record=$top/Testing/Benchmarks/instructions.csv
 program=
 mode=${1:-compare}
 case $mode in
@@ -45,9 +45,9 @@ count_per_path() {
     'BEGIN { split(few, f, "\n"); split(many, m, "\n"); printf "%.0f", (m[1] - f[1]) / (m[2] - f[2]) }'
 }
 
-# get_recorded SCENE COLUMN: prints a cell of the record (see `header` below), or nothing if it is missing.
+# get_recorded SCENE: prints the recorded instructions per path, or nothing if they are missing.
 get_recorded() {
-  [ ! -e "$record" ] || awk -F , -v scene="$1" -v column="$2" '$1 == scene { print $column }' "$record"
+  [ ! -e "$record" ] || awk -F , -v scene="$1" '$1 == scene { print $2 }' "$record"
 }
 
 install_packages "${build_packages[@]}" valgrind
@@ -70,12 +70,12 @@ compiler=$("${compiler:-c++}" --version | head -n 1 | tr , ' ')
 say "Instructions per path"
 rows=() slower=()
 for scene in S1 S2 S2hi knee; do
-  before=$(get_recorded $scene 4)
+  before=$(get_recorded $scene)
   arguments=("$knee/knee.mrml" --focus FemoralCartilage --clip surface --boundary exact --materials none --size $size)
   if [ $scene != knee ]; then
     if [ ! -e "$reference/$scene.arguments" ]; then
       echo "$scene: SKIPPED, not found in $reference"
-      rows+=("$(grep "^$scene," "$record" 2>/dev/null || echo "$scene,,,,,,")")
+      rows+=("$(grep "^$scene," "$record" 2>/dev/null || echo "$scene,,,,")")
       continue
     fi
     mapfile -t arguments < <(sed "/^--size\$/{n;s/.*/$size/}" "$reference/$scene.arguments")
@@ -84,10 +84,10 @@ for scene in S1 S2 S2hi knee; do
   echo "$scene: $now (record: ${before:-none})"
   awk -v now="$now" -v before="${before:-0}" "BEGIN { exit !(now > before * (1 + $tolerance / 100)) }" &&
     slower+=("$scene")
-  rows+=("$scene,$(get_recorded $scene 2),$before,$now,$(date +%F),$compiler,$(valgrind --version)")
+  rows+=("$scene,$now,$(date +%F),$compiler,$(valgrind --version)")
 done
 if [ "$mode" = --record ]; then
-  header=scene,instructions_at_044d203,instructions_at_previous_record,instructions,date,compiler,valgrind
+  header=scene,instructions,date,compiler,valgrind
   printf '%s\n' "$header" "${rows[@]}" >"$record.tmp"
   mv "$record.tmp" "$record"
   say "Wrote $record"
