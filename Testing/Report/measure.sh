@@ -52,10 +52,11 @@ run_jobs() {
     "$folder/jobs" || die "$1: a program failed (logs: $folder/jobs)"
   awk 'NR == 1 || FNR > 1' "$folder"/jobs/*.csv >"$out/$1.csv"
 }
-# quote WORD...: prints a line for run_jobs.
+# quote WORD...: prints a line for run_jobs; xargs would join a line that ends with a blank with the next one.
 quote() {
-  printf '%q ' "$@"
-  echo
+  local line
+  line=$(printf ' %q' "$@")
+  echo "${line# }"
 }
 
 make_phantoms() {
