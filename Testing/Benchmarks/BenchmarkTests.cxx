@@ -201,8 +201,9 @@ TEST_F(CompleteRun, PrintsARowForEverySceneAndMode) {
       EXPECT_EQ(cells[2], cells[0] == "foot" ? "oracle" : "product");
       for (const std::size_t column : {3U, 6U, 7U, 8U})
         EXPECT_TRUE(std::isfinite(std::stod(cells[column]))) << line;
-      if (!cells[4].empty()) // empty without a measurable error
+      if (!cells[4].empty()) { // empty without a measurable error
         EXPECT_GT(std::stod(cells[4]) * std::stod(cells[5]), 0.0) << line;
+      }
     }
   EXPECT_FALSE(std::getline(file, line)) << line;
   EXPECT_TRUE(std::filesystem::exists(folder / "references" / "foot.exr"));
