@@ -20,9 +20,9 @@
 #   fuzz          10^6 executions of every fuzz target, at most an hour each, and 10^4 corrupted files
 #                 through the sandboxed reader of DICOM and transform files
 #   boundary      the boundary of the clipping surface on subpixel rays
-# record measures what README and pages cite, in 70 minutes on two cores, or its parts (matrix, mutations, denoiser,
-# efficiency; figures only if named), and writes Testing/Report and the generated parts of the pages. Commit sources
-# before. FENESTRA_BUILD selects a finished build.
+# record measures what README and pages cite, in about an hour on two idle cores, or parts of it (matrix, mutations,
+# denoiser, efficiency; figures only if named), and writes Testing/Report and the generated parts of the pages. Commit
+# sources before. FENESTRA_BUILD selects a finished build.
 # Logs and tables are in build/report.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
