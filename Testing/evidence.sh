@@ -32,7 +32,7 @@ Resources/transfer Resources/lights" ;;
 # hash_tree ROOT NAME: prints the hash of an entry's sources in a checkout. Moving a file does not change it.
 hash_tree() {
   local sources
-  sources=$(list_sources "$2")
+  sources=$(list_sources "$2") || return
   (
     cd "$1" && shopt -s nullglob
     # shellcheck disable=SC2086
@@ -58,11 +58,11 @@ PERL
 
 # hash_commit COMMIT NAME: hash_tree of a commit.
 hash_commit() {
-  local folder
+  local folder status=0
   folder=$(mktemp -d)
-  git -C "$top" archive "$1" | tar -x -C "$folder"
-  hash_tree "$folder" "$2"
+  { git -C "$top" archive "$1" | tar -x -C "$folder" && hash_tree "$folder" "$2"; } 2>/dev/null || status=1
   rm -rf "$folder"
+  return $status
 }
 
 # Entries: name,date,cpu,threads,commit,sources,"result".
@@ -89,7 +89,7 @@ store() {
     IFS=, read -r name date cpu threads commit result <"$file" || die "$1: has no entries"
     [[ $commit != trial-* ]] || die "$file: is a trial (FENESTRA_TRIAL)"
     [[ $commit != unknown ]] || die "$file: was measured with a build outside git"
-    sources=$(hash_commit "${commit%-dirty}" "$name") || die "$file: was measured on commit $commit, which is not here"
+    sources=$(hash_commit "${commit%-dirty}" "$name") || die "$file: cannot read the sources of commit $commit"
     # Uncommitted changes elsewhere, such as those of the record itself, do not matter.
     [[ $commit != *-dirty ]] || [ "$(hash_tree "$top" "$name")" = "$sources" ] ||
       die "$file: was measured with uncommitted changes; commit them, build and measure again"

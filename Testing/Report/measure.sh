@@ -44,11 +44,13 @@ write_entry() {
 }
 
 # run_jobs PART PARALLEL: runs the command in each line of standard input, `NAME COMMAND...` with quoted words, and joins
-# the CSV tables that they print, in the order of the names, as OUT/PART.csv.
+# the CSV tables that they print, in the order of the names, as OUT/PART.csv. A table without rows is an error: the data
+# of the scene are missing.
 run_jobs() {
   local folder=$out/$1
   mkdir -p "$folder/jobs"
-  xargs -P "$2" -L 1 bash -c 'job=$0/$1; shift; "$@" >"$job.csv" 2>"$job.log" || { tail -n 3 "$job.log" >&2; exit 1; }' \
+  xargs -P "$2" -L 1 bash -c 'job=$0/$1; shift
+    "$@" >"$job.csv" 2>"$job.log" && [ "$(wc -l <"$job.csv")" -gt 1 ] || { tail -n 3 "$job.log" >&2; exit 1; }' \
     "$folder/jobs" || die "$1: a program failed (logs: $folder/jobs)"
   awk 'NR == 1 || FNR > 1' "$folder"/jobs/*.csv >"$out/$1.csv"
 }

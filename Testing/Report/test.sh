@@ -84,6 +84,7 @@ git commit -qam 'Change'
 store_entry "$commit" || fail "an entry of an older commit is not stored: $(cat log.txt)"
 ! is_fresh || fail 'an entry vouches for sources that are newer than its programs'
 if store_entry "trial-$commit"; then fail 'a trial is stored'; fi
+if store_entry "${commit//[0-9]/0}"; then fail 'an entry of an unknown commit is stored'; fi
 store_entry "$(git rev-parse HEAD)-dirty" || fail "changes elsewhere prevent storing: $(cat log.txt)"
 is_fresh || fail 'an entry of the current commit is stale'
 git mv "$source" Renderer/model/Step.cxx
