@@ -132,13 +132,12 @@ print_mode() {
 print_efficiency() {
   printf '| efficiency, 1 / (relMSE × CPU seconds) | S1 | S2 |\n|---|---|---|\n'
   print_mode product '**Fenestra**'
-  print_mode scalar 'its scalar integrator: delta tracking in a grid of majorants, independent samples'
-  print_mode global 'the same with one majorant for the volume'
+  print_mode scalar 'plain scalar tracker: delta tracking, grid of majorants, independent samples'
   awk -F, 'NR > 1 { printf "| %s | %s | %s |\n", $1, $2, $3 }' "$report/peers.csv"
-  printf '\nThe same scenes, lights and cameras, 256 × 256 pixels; S1 is fog, S2 thin shells and balls. Two
-threads. Fenestra: %s, on %s. Other renderers: measured once, in 2026, on another
-dual-core machine; compare only the order of magnitude ([details](Testing/Report/README.md#efficiency)).\n' \
-    "$(get efficiency 2)" "$(get efficiency 3)"
+  printf '\nThe same scenes (S1: fog; S2: thin shells and balls), lights and cameras, 256 × 256 pixels, two threads. '\
+'Fenestra: %s, %s. Others: once, in 2026, on another dual-core machine; compare only the order of magnitude '\
+'([details](Testing/Report/README.md#efficiency)).\n' "$(get efficiency 2)" "$(get efficiency 3)" | fold -s -w 120 |
+    sed 's/ *$//'
 }
 
 print_entries() {
@@ -170,12 +169,18 @@ print_curves() {
     }' "$report/efficiency.csv"
 }
 
+print_accuracy() {
+  local matrix mutations denoiser
+  matrix=$(get_result matrix) mutations=$(get_result mutations) denoiser=$(get_result denoiser)
+  printf 'Raw images are unbiased: no step size, no clamping, no tuned epsilon; they agree with those of an independent '\
+'renderer in %s of view, clip, light and medium, a test that finds %s inserted errors. Display images are denoised, with '\
+'an error estimate that was %s ([record](Testing/Report/README.md)).\n' \
+    "${matrix%%,*}" "${mutations##*: }" "${denoiser#the estimate was }" | sed 's/ found inserted/ inserted/'
+}
+
 write_pages() {
   print_efficiency | fill "$top/README.md" efficiency
-  printf 'They agree with images of an independent renderer (%s). The same test detects inserted errors (%s).\n' \
-    "$(get_result matrix)" "$(get_result mutations)" | fold -s -w 120 | sed 's/ *$//' | fill "$top/README.md" accuracy
-  printf 'Error of complete images: %s.\n' "$(get_result denoiser)" | fold -s -w 120 | sed 's/ *$//' |
-    fill "$top/README.md" denoiser
+  print_accuracy | fold -s -w 120 | sed 's/ *$//' | fill "$top/README.md" accuracy
   print_entries | fill "$report/README.md" entries
   print_curves | fill "$report/README.md" curves
 }
