@@ -34,9 +34,9 @@ void useInstructionSet(const std::string& name) {
   for (std::int64_t left = findSupportedSets(); left != 0; left &= left - 1)
     if (name == hwy::TargetName(left & -left))
       return hwy::SetSupportedTargetsForTest(left & -left);
-  throw usageError("FENESTRA_INSTRUCTIONS: " + name +
-                   " is not an instruction set of this machine; use one of " +
-                   join(instructionSets(), ", "));
+  throw requestError(ErrorCode::unknownName, "FENESTRA_INSTRUCTIONS", name,
+                     " is not an instruction set of this machine; use one of " +
+                         join(instructionSets(), ", "));
 }
 
 } // namespace fenestra

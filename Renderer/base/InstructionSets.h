@@ -12,7 +12,7 @@ std::vector<std::string> instructionSets();
 /// Instruction set in use: the best, unless another was pinned.
 std::string instructionSet();
 /// Pins one of instructionSets() for the process; the command line does so for the environment
-/// variable FENESTRA_INSTRUCTIONS. Throws Error (usage) for any other name. Must not be called
+/// variable FENESTRA_INSTRUCTIONS. Throws Error (request) for any other name. Must not be called
 /// while SIMD code runs.
 void useInstructionSet(const std::string& name);
 

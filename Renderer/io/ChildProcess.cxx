@@ -19,7 +19,7 @@ namespace {
 
 /// Executes the program, in the child. Async-signal-safe, since other threads may have held locks
 /// at the fork. Signals are blocked on entry, so that the parent's handlers do not run here.
-[[noreturn]] void execProgram(pid_t parent, int errors, char* const* arguments) {
+[[noreturn]] void execProgram(pid_t parent, int errors, char* const* arguments, int failureStatus) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) // the parent died before PR_SET_PDEATHSIG
     ::_exit(1);
@@ -39,14 +39,14 @@ namespace {
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   ::execv(selfExecutable, arguments);
   constexpr std::string_view line =
-      "fenestra: cannot start another process; close other programs\n";
+      "fenestra: error: memory: cannot start another process; close other programs\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
-  ::_exit(static_cast<int>(ErrorKind::output));
+  ::_exit(failureStatus);
 }
 
 } // namespace
 
-ChildProcess::ChildProcess(std::vector<std::string> arguments)
+ChildProcess::ChildProcess(std::vector<std::string> arguments, int failureStatus)
     : m_errors(::memfd_create("errors", MFD_CLOEXEC)) {
   const SelfArguments selfArguments(std::move(arguments));
   const pid_t parent = ::getpid();
@@ -56,10 +56,11 @@ ChildProcess::ChildProcess(std::vector<std::string> arguments)
   ::pthread_sigmask(SIG_BLOCK, &all, &before);
   m_id = m_errors.isOpen() ? ::fork() : -1;
   if (m_id == 0)
-    execProgram(parent, *m_errors, selfArguments.get());
+    execProgram(parent, *m_errors, selfArguments.get(), failureStatus);
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (m_id < 0)
-    throw outputError("memory", "cannot start another process; close other programs");
+    throw outputError(ErrorCode::outOfMemory, "memory",
+                      "cannot start another process; close other programs");
 }
 
 ChildProcess::~ChildProcess() {

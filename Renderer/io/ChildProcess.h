@@ -16,8 +16,9 @@ namespace fenestra {
 /// The kernel kills it when the thread that created it ends.
 class ChildProcess {
 public:
-  /// Runs `fenestra arguments…`. Throws Error (output) if no process can be started.
-  explicit ChildProcess(std::vector<std::string> arguments);
+  /// Runs `fenestra arguments…`. The child ends with `failureStatus` if it cannot execute the
+  /// program. Throws Error (output) if no process can be started.
+  ChildProcess(std::vector<std::string> arguments, int failureStatus);
   /// Kills the process if it still runs.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;

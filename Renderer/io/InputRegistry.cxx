@@ -96,24 +96,27 @@ void requireFile(const std::filesystem::path& path, const std::string& hint,
                      "is followed by a zero byte in the file that names it; save that file again");
   // Checked before any access, which could mount a file system or reveal the read to a server.
   if (confinement && !isWithin(path, *confinement))
-    throw inputError(path, "is not inside the archive that refers to it; save the scene again");
+    throw inputError(ErrorCode::outsideArchive, path,
+                     "is not inside the archive that refers to it; save the scene again");
   struct stat status = {};
   if (::stat(path.c_str(), &status) != 0) {
     if (errno == ENOENT || errno == ENOTDIR)
-      throw inputError(path, "no such file; check the name");
+      throw inputError(ErrorCode::missingFile, path, "no such file; check the name");
     throw readError(path, errno, "check its permissions and those of its folder");
   }
   if (S_ISDIR(status.st_mode))
-    throw inputError(path, "is a folder; ", hint);
+    throw inputError(ErrorCode::notAFile, path, "is a folder; ", hint);
   if (!S_ISREG(status.st_mode))
-    throw inputError(path, "is not a regular file; ", hint);
+    throw inputError(ErrorCode::notAFile, path, "is not a regular file; ", hint);
   if (static_cast<std::uint64_t>(status.st_size) > maxBytes)
-    throw inputError(path, "is larger than ", maxBytes >> 20, " MB; use a smaller file");
+    throw inputError(ErrorCode::limitExceeded, path, "is larger than ", maxBytes >> 20,
+                     " MB; use a smaller file");
   if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
     throw readError(path, errno, "check its permissions");
   const std::optional<FileId> file = fileId(path);
   if (file && isResult(*file))
-    throw inputError(path, "is a result of this command; name another file");
+    throw inputError(ErrorCode::outputConflict, path,
+                     "is a result of this command; name another file");
   if (file)
     addInput(*file, path);
 }

@@ -37,19 +37,21 @@ nlohmann::json parseJson(std::string_view text, const std::string& source, int m
   const auto count = [&](int depth, Event event, const nlohmann::json&) {
     const bool isContainer = event == Event::object_start || event == Event::array_start;
     if (isContainer && depth >= maxDepth)
-      throw inputError(source, "is nested deeper than ", maxDepth, " levels; simplify it");
+      throw inputError(ErrorCode::limitExceeded, source, "is nested deeper than ", maxDepth,
+                       " levels; simplify it");
     if ((isContainer || event == Event::key || event == Event::value) && ++nodes > maxNodes)
-      throw inputError(source, "contains more than ", maxNodes,
+      throw inputError(ErrorCode::limitExceeded, source, "contains more than ", maxNodes,
                        " values and keys; use a smaller file");
     return true;
   };
   try {
     return nlohmann::json::parse(text, count);
   } catch (const nlohmann::json::parse_error& error) {
-    throw inputError(source, "is not valid JSON at byte ", error.byte,
+    throw inputError(ErrorCode::damagedFile, source, "is not valid JSON at byte ", error.byte,
                      "; check its brackets, commas and quotes");
   } catch (const nlohmann::json::exception&) {
-    throw inputError(source, "contains a number that is too large; use a smaller one");
+    throw inputError(ErrorCode::limitExceeded, source,
+                     "contains a number that is too large; use a smaller one");
   }
 }
 
@@ -58,7 +60,7 @@ std::string dumpJson(const nlohmann::ordered_json& json, int indent) {
 }
 
 Error JsonNode::error(const std::string& hint) const {
-  return inputError(m_source, m_path.empty() ? hint : m_path + ": " + hint);
+  return m_path.empty() ? inputError(m_source, hint) : fieldError(m_source, m_path, hint);
 }
 
 const nlohmann::json& JsonNode::require(bool isValid, const char* hint) const {

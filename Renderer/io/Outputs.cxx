@@ -54,14 +54,14 @@ bool isStickyProtected(const struct stat& file, const fs::path& folder) {
 void requireReplaceable(const fs::path& path, const fs::path& target) {
   struct stat status = {};
   if (!target.has_filename())
-    throw outputError(path, "is a folder; name a file");
+    throw outputError(ErrorCode::notAFile, path, "is a folder; name a file");
   if (::lstat(target.c_str(), &status) != 0) {
     if (errno != ENOENT)
       throw writeError(path, errno);
     return;
   }
   if (!S_ISREG(status.st_mode))
-    throw outputError(path, "is a folder or a device; name a file");
+    throw outputError(ErrorCode::notAFile, path, "is a folder or a device; name a file");
   if ((status.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     throw outputError(path, "is write-protected; choose another name, or chmod u+w it");
   if (isStickyProtected(status, target.parent_path()))
@@ -71,12 +71,14 @@ void requireReplaceable(const fs::path& path, const fs::path& target) {
 
 void requireNotInput(const fs::path& path, const std::optional<FileId>& file) {
   if (const auto input = file ? findInput(*file) : std::nullopt)
-    throw usageError(path, ": would replace an input file",
-                     (*input == path ? "" : " (" + input->string() + ")"), "; choose another name");
+    throw requestError(ErrorCode::outputConflict, path, "would replace an input file",
+                       (*input == path ? "" : " (" + input->string() + ")"),
+                       "; choose another name");
 }
 
 Error duplicateError(const fs::path& path) {
-  return usageError(path, ": would be written twice; give each result its own name");
+  return requestError(ErrorCode::outputConflict, path,
+                      "would be written twice; give each result its own name");
 }
 
 void syncFolder(const fs::path& folder) {
@@ -163,9 +165,7 @@ struct Outputs::Result {
     // An empty file has no data to lose.
     if (isOwnFile && fs::exists(target, failed) && !fs::is_empty(target, failed) &&
         !isOwnFile(target))
-      throw usageError(
-          path,
-          ": exists and was not written by Fenestra; move it away, or choose another --output");
+      throw requestError(ErrorCode::foreignOutput, path, "exists and was not written by Fenestra");
   }
 };
 
@@ -184,8 +184,9 @@ void Outputs::add(const fs::path& path, const IsOwnFile& isOwnFile) {
     result->target = resolveTarget(path);
     requireReplaceable(path, result->target);
     if (isTempName(result->target.filename().string(), tempFilePrefix))
-      throw usageError(
-          path, ": is a name for temporary files, which the next run removes; choose another name");
+      throw requestError(
+          ErrorCode::outputConflict, path,
+          "is a name for temporary files, which the next run removes; choose another name");
   }
   requireNotInput(path, result->id());
   const std::optional<FileId> id = result->id();

@@ -47,13 +47,13 @@ public:
 
   /// Declares a result that the user has named, or, with `isOwnFile`, one that Fenestra names.
   /// Links are followed; /dev/stdout, /dev/fd/N and pipes are streams, written after all files.
-  /// Throws Error: usage if `path` is a registered input, another result, a temporary file's name,
-  /// or a file that is neither Fenestra's own nor empty; output if `path` is a folder, a device or
-  /// write-protected, or no file can be created in its folder.
+  /// Throws Error: request if `path` is a registered input, another result, a temporary file's
+  /// name, or a file that is neither Fenestra's own nor empty; output if `path` is a folder, a
+  /// device or write-protected, or no file can be created in its folder.
   void add(const std::filesystem::path& path, const IsOwnFile& isOwnFile = {});
 
   /// Repeats add's check against the input registry, after more files were read. Throws Error
-  /// (usage).
+  /// (request).
   void checkInputs() const;
   /// Removes the results from the input registry, after a request that reads a result was refused.
   void unregisterInputs() const;
@@ -66,8 +66,8 @@ public:
 
   /// Puts all content written since the last commit in place, all or nothing: a failure restores
   /// the previous files. If two processes have the same results, one places all of its own before
-  /// the other. No signal ends the process meanwhile. Throws Error: usage if a result has become an
-  /// input; output if a result cannot be placed.
+  /// the other. No signal ends the process meanwhile. Throws Error: request if a result has become
+  /// an input; output if a result cannot be placed.
   void commit(Durability durability = Durability::synced);
 
 private:

@@ -227,7 +227,8 @@ void SandboxedReader::start() {
   if (m_child != 0)
     return;
   end();
-  throw outputError("memory", "cannot start a process to read files; close other programs");
+  throw outputError(ErrorCode::outOfMemory, "memory",
+                    "cannot start a process to read files; close other programs");
 }
 
 void SandboxedReader::end() {

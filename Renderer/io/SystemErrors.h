@@ -56,7 +56,8 @@ inline Error createError(const std::filesystem::path& path, int code, const std:
 
 /// Error for an input that cannot be read.
 inline Error readError(const std::filesystem::path& path, int code, const std::string& nameHint) {
-  return inputError(path, "cannot be read: ", systemMessage(code), "; ", readHint(code, nameHint));
+  return inputError(ErrorCode::unreadableFile, path, "cannot be read: ", systemMessage(code), "; ",
+                    readHint(code, nameHint));
 }
 
 /// Writes all of `content` to the descriptor `file`. Throws Error (output), which names `path`.

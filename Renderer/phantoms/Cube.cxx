@@ -35,7 +35,7 @@ VolumeProperty cubeProperty(double edge) {
 Phantom makeCubePhantom(const CubeOptions& options) {
   const Size3 size = Size3::Constant(options.size);
   if (!(options.edge > 0.0) || !std::isfinite(options.edge))
-    throw usageError("--edge: must be a positive number of mm");
+    throw requestError(ErrorCode::invalidValue, "edge", "must be a positive number of mm");
 
   Phantom phantom;
   phantom.volume.grid =

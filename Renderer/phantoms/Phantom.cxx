@@ -7,7 +7,7 @@ namespace fenestra {
 Grid makePhantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes,
                      const Vec3& center) {
   if ((size.array() < 16).any() || (size.array() > 1024).any())
-    throw usageError("--size: each axis must have 16 to 1024 voxels");
+    throw requestError(ErrorCode::invalidValue, "size", "each axis must have 16 to 1024 voxels");
   const Vec3 spacing = fieldOfView.cwiseQuotient(size.cast<double>());
   Affine indexToWorld = Affine::Identity();
   indexToWorld.linear() = axes * Mat3::Diagonal(spacing);

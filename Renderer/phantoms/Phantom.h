@@ -36,8 +36,8 @@ struct Phantom {
 };
 
 /// Grid of `size` voxels around `center` (world). `fieldOfView`: mm along the voxel axes; the
-/// columns of `axes` are their unit directions in the world. Throws Error (usage) unless each axis
-/// has 16 to 1024 voxels.
+/// columns of `axes` are their unit directions in the world. Throws Error (request) unless each
+/// axis has 16 to 1024 voxels.
 Grid makePhantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes,
                      const Vec3& center);
 

@@ -14,7 +14,7 @@ namespace fenestra {
 /// (the volume's box), .mrml (a scene of these) and .mrb (the same as an archive). Files are LPS,
 /// identical on every run, and appear all together or not at all. They only replace files that
 /// Fenestra wrote: with a provenance tag, with identical content, or beside this phantom's volume
-/// and scene. Returns the file names. Throws Error: usage for a file that Fenestra did not write;
+/// and scene. Returns the file names. Throws Error: request for a file that Fenestra did not write;
 /// output.
 std::vector<std::string> writePhantom(const Phantom& phantom,
                                       const std::filesystem::path& directory,

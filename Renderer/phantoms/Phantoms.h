@@ -1,6 +1,6 @@
 #pragma once
 // The synthetic subjects. Voxels do not depend on run or number of threads. Every function throws
-// Error (usage) unless each axis has 16 to 1024 voxels.
+// Error (request) unless each axis has 16 to 1024 voxels.
 
 #include "phantoms/Phantom.h"
 
@@ -38,7 +38,7 @@ struct CubeOptions {
 /// index relative to the middle. The segment "focus" has 255 x 255 x 391 voxels of 512, its long
 /// edge along z; other sizes use the same proportions, rounded. Along an axis where n and the focus
 /// differ by an odd number, the focus lies half a voxel below the middle. Labels cover the focus
-/// only. Throws Error (usage) unless edge > 0.
+/// only. Throws Error (request) unless edge > 0.
 Phantom makeCubePhantom(const CubeOptions& options = {});
 
 } // namespace fenestra

@@ -7,8 +7,10 @@
 #include "program/BatchResults.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
+#include "program/ErrorAdvice.h"
 #include "program/ProgressView.h"
 #include "program/Stop.h"
+#include "program/UsageError.h"
 
 #include <algorithm>
 #include <chrono>
@@ -110,7 +112,8 @@ private:
       manifest->begin();
       startWorker(row, std::move(manifest), worker);
     } catch (const Error& error) {
-      reportOutcome(row, {State::failed, error.exitStatus(), 0.0, error.what()});
+      reportOutcome(
+          row, {State::failed, exitStatus(error.kind()), 0.0, composeMessage(error.message())});
     }
   }
 
@@ -118,7 +121,8 @@ private:
   void startWorker(std::size_t row, std::unique_ptr<RowManifest> manifest, std::size_t worker) {
     auto arguments = manifest->arguments(countThreads(worker));
     m_workers[worker].reset(
-        new Worker{row, std::move(manifest), ChildProcess(std::move(arguments))});
+        new Worker{row, std::move(manifest),
+                   ChildProcess(std::move(arguments), exitStatus(ErrorKind::output))});
   }
 
   void finishWorker(std::size_t index) {
@@ -139,7 +143,8 @@ private:
         return startWorker(worker->row, std::move(worker->manifest), index);
       worker->manifest->finish(outcome);
     } catch (const Error& error) {
-      outcome = {State::failed, error.exitStatus(), outcome.seconds, error.what()};
+      outcome = {State::failed, exitStatus(error.kind()), outcome.seconds,
+                 composeMessage(error.message())};
     }
     reportOutcome(worker->row, outcome);
   }
@@ -150,10 +155,10 @@ private:
       return concat("ended by signal ", child.status() - 128, " (",
                     ::strsignal(child.status() - 128), ")");
     std::string last;
-    constexpr std::string_view program = "fenestra: ";
+    constexpr std::string_view start = "fenestra: error: ";
     for (const std::string& line : split(child.errors(), '\n'))
-      if (line.starts_with(program) && !line.starts_with("fenestra: warning: "))
-        last = line.substr(program.size());
+      if (line.starts_with(start))
+        last = line.substr(start.size());
     return last.empty() ? concat("ended with status ", child.status()) : toOneLine(last);
   }
 
@@ -280,11 +285,12 @@ int batchCommand(int argc, char** argv, int first) {
     return stopStatus();
   for (std::size_t row = 0; row < results.rows.size(); ++row)
     if (const RowOutcome& outcome = results.outcomes[row]; outcome.state == State::failed) {
-      const bool isKnown = outcome.status == static_cast<int>(ErrorKind::usage) ||
-                           outcome.status == static_cast<int>(ErrorKind::input);
-      throw Error(isKnown ? static_cast<ErrorKind>(outcome.status) : ErrorKind::output,
-                  concat(results.table, ": ", batch.failed(), " of ", batch.rows(),
-                         " rows failed, the first ", results.rows[row].name, ": ", outcome.error));
+      constexpr std::array kinds = {ErrorKind::request, ErrorKind::input};
+      const auto* const kind = std::ranges::find(kinds, outcome.status, exitStatus);
+      throw Error(kind == kinds.end() ? ErrorKind::output : *kind,
+                  makeMessage(ErrorCode::failedRows, results.table, batch.failed(), " of ",
+                              batch.rows(), " rows failed, the first ", results.rows[row].name,
+                              ": ", outcome.error));
     }
   return 0;
 }

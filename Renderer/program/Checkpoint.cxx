@@ -6,6 +6,7 @@
 #include "io/InputRegistry.h"
 #include "io/JsonNode.h"
 #include "program/FileNames.h"
+#include "program/UsageError.h"
 #include "program/about/Version.h"
 
 #include <algorithm>

@@ -2,6 +2,7 @@
 
 #include "base/Error.h"
 #include "program/Commands.h"
+#include "program/UsageError.h"
 #include "program/about/About.h"
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include "program/CommandLine.h"
 #include "program/RenderOptions.h"
 #include "program/TurntableOptions.h"
+#include "program/UsageError.h"
 
 #include <filesystem>
 

@@ -41,7 +41,8 @@ Comparison compareFiles(const OptionValues& values, const Image& a, const Image&
     return compareImages(a, b);
   } catch (const Error& error) {
     throw Error(error.kind(),
-                concat(*values.text("A"), ", ", *values.text("B"), ": ", error.what()));
+                makeMessage(error.message().code,
+                            concat(*values.text("A"), ", ", *values.text("B")), error.what()));
   }
 }
 

@@ -3,6 +3,7 @@
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/Describe.h"
+#include "program/UsageError.h"
 
 #include <iostream>
 #include <map>

@@ -5,7 +5,9 @@
 #include "io/JsonNode.h"
 #include "io/MessageText.h"
 #include "program/CommandLine.h"
+#include "program/ErrorAdvice.h"
 #include "program/MergedOptions.h"
+#include "program/UsageError.h"
 #include "scene/Inspection.h"
 
 #include <algorithm>
@@ -429,6 +431,7 @@ int inspectCommand(int argc, char** argv, int first) {
   Inspection inspection = inspectInput(request, input);
   if (Inspection& use = inspection["render"]; !use.is_null())
     use["stored"] = listStoredArguments(given, merged);
+  composeReport(inspection);
   const Inspection leftOut = stored.ignored;
   Inspection& warnings = inspection["warnings"];
   warnings.insert(warnings.begin(), leftOut.begin(), leftOut.end());

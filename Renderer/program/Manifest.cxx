@@ -4,6 +4,7 @@
 #include "io/Digest.h"
 #include "io/InputRegistry.h"
 #include "program/FileNames.h"
+#include "program/UsageError.h"
 #include "program/about/Version.h"
 
 #include <algorithm>

@@ -7,6 +7,7 @@
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/RenderCommand.h"
+#include "program/UsageError.h"
 
 #include <algorithm>
 

@@ -4,6 +4,7 @@
 #include "files/images/ImageFormat.h"
 #include "files/slicer/MrmlScene.h"
 #include "io/MessageText.h"
+#include "program/UsageError.h"
 #include "scene/Defaults.h"
 #include "scene/NamedPresets.h"
 #include "scene/OrganPresets.h"

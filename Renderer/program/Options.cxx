@@ -2,6 +2,7 @@
 
 #include "base/Error.h"
 #include "io/MessageText.h"
+#include "program/UsageError.h"
 
 #include <algorithm>
 #include <stdexcept>

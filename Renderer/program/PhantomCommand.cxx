@@ -5,6 +5,7 @@
 #include "phantoms/PhantomWriter.h"
 #include "phantoms/Phantoms.h"
 #include "program/CommandLine.h"
+#include "program/UsageError.h"
 
 #include <cstdio>
 #include <iostream>

@@ -5,6 +5,7 @@
 #include "io/MessageText.h"
 #include "io/Sandbox.h"
 #include "io/TempFiles.h"
+#include "program/ErrorAdvice.h"
 #include "program/Stop.h"
 
 #include <algorithm>
@@ -27,26 +28,28 @@ void print(std::string_view text) {
 }
 
 /// Prints an error message as one line. Does not allocate, since memory may be exhausted.
-int reportFailure(int status, std::string_view line) {
+int reportFailure(int status, std::string_view line, std::string_view advice = {}) {
   static char buffer[8192];
   const std::size_t size = std::min(line.size(), sizeof buffer);
   std::copy_n(line.begin(), size, buffer);
   makeOneLine({buffer, size});
-  print("fenestra: ");
+  print("fenestra: error: ");
   print({buffer, size});
+  print(advice.empty() ? "" : "; ");
+  print(advice);
   print("\n");
   return status;
 }
 
-constexpr int outputStatus = static_cast<int>(ErrorKind::output);
+constexpr int outputStatus = exitStatus(ErrorKind::output);
 
 int run(int argc, char** argv, DispatchFunction dispatch) {
   try {
     return dispatch(argc, argv);
   } catch (const Error& error) {
-    return reportFailure(error.exitStatus(), error.what());
+    return reportFailure(exitStatus(error.kind()), error.what(), findAdvice(error.message().code));
   } catch (const std::bad_alloc&) {
-    return reportFailure(outputStatus, "out of memory; use a smaller volume or image");
+    return reportFailure(outputStatus, "memory: is exhausted; use a smaller volume or image");
   } catch (const std::exception& error) {
     return reportFailure(outputStatus, error.what());
   }

@@ -8,6 +8,7 @@
 #include "metrics/FocusMetrics.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
+#include "program/ErrorAdvice.h"
 #include "program/FileNames.h"
 #include "program/Progress.h"
 #include "program/RenderSteps.h"
@@ -104,7 +105,7 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
   json["filesRead"] = Json::array();
   for (const std::string& file : scene.files())
     json["filesRead"].push_back(toRelativeName(file, folder));
-  json["warnings"] = scene.warnings();
+  json["warnings"] = composeMessages(scene.warnings());
   for (const std::string& warning : stats.warnings)
     json["warnings"].push_back(warning);
 }
@@ -277,7 +278,7 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   const Stopwatch total;
   const PreparedScene scene(options.scene, job.input);
   outputs.checkInputs(); // now including files that the scene refers to
-  warn(options, scene.warnings());
+  warn(options, composeMessages(scene.warnings()));
   if (options.progress != ProgressMode::none && options.progress != ProgressMode::xml)
     std::cerr << toOneLine(scene.choices()) << '\n';
 

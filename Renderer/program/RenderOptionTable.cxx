@@ -3,6 +3,7 @@
 #include "base/Error.h"
 #include "files/images/ImageFormat.h"
 #include "io/MessageText.h"
+#include "program/UsageError.h"
 #include "scene/NamedPresets.h"
 
 #include <algorithm>

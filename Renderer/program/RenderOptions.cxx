@@ -5,6 +5,7 @@
 #include "base/Error.h"
 #include "files/images/ImageFormat.h"
 #include "files/slicer/SceneFiles.h"
+#include "program/UsageError.h"
 #include "scene/NamedPresets.h"
 
 #include <algorithm>

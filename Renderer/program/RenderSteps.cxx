@@ -86,7 +86,8 @@ RenderJob makeRenderJob(const OptionValues& given) {
   const SceneOptions stored = mergeSceneOptions(given, input);
   const PresetOptions preset = mergePreset(stored.values, input);
   RenderJob job{stored.values, preset.values, makeRenderOptions(preset), input};
-  job.options.scene.omissions = stored.ignored;
+  for (const std::string& line : stored.ignored)
+    job.options.scene.omissions.push_back({ErrorCode::ignoredRequest, "", line});
   return job;
 }
 
@@ -113,9 +114,10 @@ void checkMemory(const RenderRequest& scene) {
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   if (needed <= available)
     return;
-  throw outputError("--size", "an image of ", scene.width, "x", scene.height, " pixels needs ",
-                    toString(needed / gigabyte, 3), " GB of memory, but this machine has ",
-                    toString(available / gigabyte, 3), "; use a smaller size");
+  throw outputError(ErrorCode::outOfMemory, "--size", "an image of ", scene.width, "x",
+                    scene.height, " pixels needs ", toString(needed / gigabyte, 3),
+                    " GB of memory, but this machine has ", toString(available / gigabyte, 3),
+                    "; use a smaller size");
 }
 
 RenderSettings ImageDenoiser::settings() {

@@ -6,7 +6,9 @@
 #include "io/Digest.h"
 #include "io/InputRegistry.h"
 #include "io/SystemErrors.h"
+#include "program/ErrorAdvice.h"
 #include "program/FileNames.h"
+#include "program/UsageError.h"
 
 #include <algorithm>
 #include <utility>
@@ -166,8 +168,8 @@ void RowManifest::begin() {
 }
 
 bool RowManifest::discardCheckpoint(const RowOutcome& outcome) {
-  const bool isRefused = outcome.status == static_cast<int>(ErrorKind::usage) ||
-                         outcome.status == static_cast<int>(ErrorKind::input);
+  const bool isRefused = outcome.status == exitStatus(ErrorKind::request) ||
+                         outcome.status == exitStatus(ErrorKind::input);
   if (!isRefused || !std::exchange(m_isResumed, false))
     return false;
   removeCheckpoint();

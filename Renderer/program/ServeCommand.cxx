@@ -5,6 +5,7 @@
 #include "base/Stopwatch.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
+#include "program/ErrorAdvice.h"
 #include "program/RenderSteps.h"
 #include "program/ServeInput.h"
 
@@ -59,7 +60,7 @@ private:
     } catch (const Error& error) {
       m_outputs.unregisterInputs();
       if (changes.size() == 1)
-        writeErrorEvent(changes.front().id, error.what());
+        writeErrorEvent(changes.front().id, error.message());
     }
     if (changes.size() > 1) {
       applyChanges(changes.first(changes.size() / 2));
@@ -99,7 +100,7 @@ private:
       writeImageEvent(result, denoisedNoise(filtered), last);
     } catch (const Error& error) {
       if (last || m_failure != error.what())
-        writeErrorEvent(m_change.id, error.what());
+        writeErrorEvent(m_change.id, error.message());
       m_failure = error.what();
     }
     m_publishSeconds = watch.seconds();
@@ -118,8 +119,8 @@ private:
     event["done"] = last;
     for (const std::filesystem::path& path : m_options.outputs)
       event["files"].push_back(path.string());
-    for (const std::string& warning : m_scene->warnings())
-      if (m_warned.insert(warning).second)
+    for (const Message& message : m_scene->warnings())
+      if (const std::string warning = composeMessage(message); m_warned.insert(warning).second)
         event["warnings"].push_back(warning);
     writeEvent(event);
   }

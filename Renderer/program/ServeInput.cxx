@@ -5,8 +5,10 @@
 #include "io/JsonNode.h"
 #include "io/MessageText.h"
 #include "program/CommandLine.h"
+#include "program/ErrorAdvice.h"
 #include "program/MergedOptions.h"
 #include "program/Stop.h"
+#include "program/UsageError.h"
 #include "scene/NamedPresets.h"
 
 #include <cstdio>
@@ -45,11 +47,14 @@ void writeEvent(const nlohmann::ordered_json& content) {
   if (std::fwrite(line.data(), 1, line.size(), stdout) == line.size() && std::fflush(stdout) == 0)
     return;
   std::fputs("fenestra: standard output was closed\n", stderr);
-  endProcess(static_cast<int>(ErrorKind::output));
+  endProcess(exitStatus(ErrorKind::output));
 }
 
-void writeErrorEvent(const json& id, const std::string& message) {
-  writeEvent({{"event", "error"}, {"id", id}, {"message", message}});
+void writeErrorEvent(const json& id, const Message& message) {
+  writeEvent({{"event", "error"},
+              {"id", id},
+              {"code", toString(message.code)},
+              {"message", composeMessage(message)}});
 }
 
 json readId(const json& change) {
@@ -132,7 +137,9 @@ void ServeInput::read() {
       continue;
     }
     if (line.size() > longestLine)
-      writeErrorEvent(nullptr, "a line has more than a million characters; send shorter lines");
+      writeErrorEvent(nullptr,
+                      makeMessage(ErrorCode::limitExceeded, "a line",
+                                  "has more than a million characters; send shorter ones"));
     else if (line.find_first_not_of(" \t\r") != std::string::npos)
       handleLine(line);
     line.clear();
@@ -152,7 +159,7 @@ void ServeInput::handleLine(const std::string& line) {
     m_pending.push_back(change);
     m_monitor.stop = true;
   } catch (const Error& error) {
-    writeErrorEvent(change.id, error.what());
+    writeErrorEvent(change.id, error.message());
   }
   m_changed.notify_one();
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Changes that a running server reads from standard input, one JSON object per line.
 
+#include "base/Error.h"
 #include "base/Stopwatch.h"
 #include "program/RenderOptions.h"
 #include "scene/Input.h"
@@ -16,7 +17,7 @@ namespace fenestra {
 /// closed, since no client is left.
 void writeEvent(const nlohmann::ordered_json& content);
 /// `id`: of the change, or null.
-void writeErrorEvent(const nlohmann::json& id, const std::string& message);
+void writeErrorEvent(const nlohmann::json& id, const Message& message);
 
 /// One line of input.
 struct ServeChange {

@@ -3,6 +3,7 @@
 #include "base/Error.h"
 #include "io/Outputs.h"
 #include "io/TempFiles.h"
+#include "program/ErrorAdvice.h"
 
 #include <csignal>
 #include <ctime>
@@ -85,7 +86,7 @@ bool isStopRequested() {
 }
 
 int stopStatus() {
-  return firstSignal == SIGPIPE ? static_cast<int>(ErrorKind::output) : stoppedStatus;
+  return firstSignal == SIGPIPE ? exitStatus(ErrorKind::output) : stoppedStatus;
 }
 
 void endProcess(int status) {

@@ -9,10 +9,12 @@
 #include "io/SystemErrors.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
+#include "program/ErrorAdvice.h"
 #include "program/Progress.h"
 #include "program/RenderSteps.h"
 #include "program/Stop.h"
 #include "program/TurntableManifest.h"
+#include "program/UsageError.h"
 
 #include <chrono>
 #include <future>
@@ -95,8 +97,8 @@ private:
     if (!waitForView(frame))
       return false;
     m_view = m_preparing.get();
-    for (const std::string& warning : m_view.scene.warnings())
-      warn(warning);
+    for (const Message& warning : m_view.scene.warnings())
+      warn(composeMessage(warning));
     RenderOptions options = m_options.render;
     options.outputs = m_options.images(frame);
     ImageDenoiser filter(options, m_view.scene);

@@ -3,6 +3,7 @@
 #include "base/Error.h"
 #include "io/InputRegistry.h"
 #include "program/FileNames.h"
+#include "program/UsageError.h"
 
 #include <algorithm>
 

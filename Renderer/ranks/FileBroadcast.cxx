@@ -34,7 +34,8 @@ void broadcastFiles(const std::vector<fs::path>& files, Ranks& ranks) {
     std::ifstream content(file, std::ios::binary);
     forEachBlock(size, [&](std::span<char> block) {
       if (!content.read(block.data(), static_cast<std::streamsize>(block.size())))
-        throw inputError(file, "cannot be read completely; check its disk");
+        throw inputError(ErrorCode::unreadableFile, file,
+                         "cannot be read completely; check its disk");
       ranks.broadcast(block);
     });
   }

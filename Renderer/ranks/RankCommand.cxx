@@ -4,8 +4,10 @@
 #include "base/InstructionSets.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
+#include "program/ErrorAdvice.h"
 #include "program/RenderCommand.h"
 #include "program/Stop.h"
+#include "program/UsageError.h"
 #include "program/about/Version.h"
 #include "ranks/FileBroadcast.h"
 #include "ranks/Scheduler.h"
@@ -60,9 +62,9 @@ void startRanks(const RenderOptions& options, const PreparedScene& scene,
     std::string text = describeScene(scene, settings);
     ranks.broadcast(text);
   } catch (const Error& error) { // without an abort, the other ranks would wait for more bytes
-    ranks.abort(error.what(), error.exitStatus());
+    ranks.abort(composeMessage(error.message()), exitStatus(error.kind()));
   } catch (const std::exception& error) {
-    ranks.abort(error.what(), static_cast<int>(ErrorKind::input));
+    ranks.abort(error.what(), exitStatus(ErrorKind::input));
   }
   scheduler.start(monitor);
 }
@@ -125,12 +127,12 @@ int dispatchRank(int argc, char** argv) {
   try {
     runOtherRank(argc, argv, ranks);
   } catch (const Error& error) {
-    ranks.abort(error.what(), error.exitStatus());
+    ranks.abort(composeMessage(error.message()), exitStatus(error.kind()));
   } catch (const std::bad_alloc&) {
     ranks.abort("out of memory; use fewer ranks per machine, or a smaller image",
-                static_cast<int>(ErrorKind::output));
+                exitStatus(ErrorKind::output));
   } catch (const std::exception& error) {
-    ranks.abort(error.what(), static_cast<int>(ErrorKind::output));
+    ranks.abort(error.what(), exitStatus(ErrorKind::output));
   }
   return 0;
 }

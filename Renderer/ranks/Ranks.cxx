@@ -22,7 +22,8 @@ Ranks::Ranks() {
   int level = MPI_THREAD_SINGLE;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);
   if (level < MPI_THREAD_SERIALIZED)
-    throw outputError("MPI", "this library does not support threads; use another one");
+    throw outputError(ErrorCode::internal, "MPI",
+                      "this library does not support threads; use another one");
   MPI_Comm_rank(MPI_COMM_WORLD, &m_rank);
   MPI_Comm_size(MPI_COMM_WORLD, &m_count);
 }
@@ -55,7 +56,7 @@ void Ranks::broadcast(std::string& text) {
   broadcast(std::span(text));
 }
 
-void Ranks::send(int to, const Message& message) {
+void Ranks::send(int to, const RankMessage& message) {
   const std::lock_guard lock(m_mutex);
   MPI_Send(message.data(), static_cast<int>(message.size()), MPI_UINT64_T, to, messageTag,
            MPI_COMM_WORLD);
@@ -70,7 +71,7 @@ std::optional<ReceivedMessage> Ranks::receive() {
     return std::nullopt;
   int size = 0;
   MPI_Get_count(&status, MPI_UINT64_T, &size);
-  ReceivedMessage received{status.MPI_SOURCE, Message(static_cast<std::size_t>(size))};
+  ReceivedMessage received{status.MPI_SOURCE, RankMessage(static_cast<std::size_t>(size))};
   MPI_Recv(received.message.data(), size, MPI_UINT64_T, received.from, messageTag, MPI_COMM_WORLD,
            MPI_STATUS_IGNORE);
   return received;
@@ -84,7 +85,7 @@ bool Ranks::hasMessage() {
 }
 
 void Ranks::abort(std::string_view line, int status) {
-  std::cerr << toOneLine(concat("fenestra: rank ", m_rank, ": ", line)) << std::endl;
+  std::cerr << toOneLine(concat("fenestra: error: rank ", m_rank, ": ", line)) << std::endl;
   MPI_Abort(MPI_COMM_WORLD, status); // without the lock: other threads may be inside a call
   ::_exit(status);
 }

@@ -14,11 +14,11 @@
 namespace fenestra {
 
 /// Words of a message; sender and receiver agree on their meaning.
-using Message = std::vector<std::uint64_t>;
+using RankMessage = std::vector<std::uint64_t>;
 
 struct ReceivedMessage {
   int from = 0; ///< rank
-  Message message;
+  RankMessage message;
 };
 
 /// All methods are thread-safe.
@@ -42,7 +42,7 @@ public:
   /// Sends the text of rank 0 to all others. Each rank must call this.
   void broadcast(std::string& text);
 
-  void send(int to, const Message& message);
+  void send(int to, const RankMessage& message);
   /// Next message, if any.
   std::optional<ReceivedMessage> receive();
   /// True if receive() would return a message.

@@ -4,6 +4,7 @@
 #include "base/Stopwatch.h"
 #include "image/PixelWords.h"
 #include "integrator/render/TileStream.h"
+#include "program/ErrorAdvice.h"
 
 #include <tbb/task_arena.h>
 
@@ -23,13 +24,13 @@ constexpr std::size_t maxLeaseTiles = 4096; ///< 60 MB
 /// Reads the words of a message in order.
 class MessageReader {
 public:
-  explicit MessageReader(const Message& message) : m_message(message) {}
+  explicit MessageReader(const RankMessage& message) : m_message(message) {}
 
   std::uint64_t word() { return m_message.at(m_next++); }
   std::size_t wordsLeft() const { return m_message.size() - m_next; }
 
 private:
-  const Message& m_message;
+  const RankMessage& m_message;
   std::size_t m_next = 0;
 };
 
@@ -46,7 +47,7 @@ void forEachTilePixel(std::span<const int> tiles, Film& film, Each&& each) {
 }
 
 /// Appends the number of tiles, the tiles, and the sums of their pixels.
-void writeTiles(std::span<const int> tiles, Film& film, Message& message) {
+void writeTiles(std::span<const int> tiles, Film& film, RankMessage& message) {
   message.push_back(tiles.size());
   message.insert(message.end(), tiles.begin(), tiles.end());
   message.reserve(message.size() + tiles.size() * Tiles::size * Tiles::size * wordsPerPixel);
@@ -109,8 +110,8 @@ public:
 private:
   void returnTiles(RenderResult& result) {
     const bool isStopped = m_monitor.stop;
-    Message message = {isStopped,
-                       static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency())};
+    RankMessage message = {isStopped,
+                           static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency())};
     forEachCounter(result.counters, [&](std::uint64_t count) { message.push_back(count); });
     writeTiles(isStopped ? std::span<const int>() : std::span<const int>(m_tiles), result.film,
                message);
@@ -185,7 +186,7 @@ void Scheduler::serve(const std::stop_token& end) {
       poller.wait();
     }
   } catch (const std::bad_alloc&) {
-    m_ranks.abort("out of memory; use a smaller image", static_cast<int>(ErrorKind::output));
+    m_ranks.abort("out of memory; use a smaller image", exitStatus(ErrorKind::output));
   }
 }
 
@@ -203,7 +204,7 @@ bool Scheduler::receiveResults() {
 }
 
 /// Adds a worker's samples to the film. The caller holds m_mutex.
-void Scheduler::acceptResult(const Message& message) {
+void Scheduler::acceptResult(const RankMessage& message) {
   MessageReader reader(message);
   if (reader.word() != 0)
     m_monitor->stop = true;
@@ -230,10 +231,10 @@ void Scheduler::dispatchTiles() {
 
 /// Leases a fraction of the pass's remaining tiles. Leases shrink toward the end of the pass, so
 /// that all ranks finish it together. The caller holds m_mutex.
-Message Scheduler::makeLease(Worker& worker) {
+RankMessage Scheduler::makeLease(Worker& worker) {
   const std::size_t fair = m_pass->tilesLeft() / (2 * m_workers.size());
   const std::size_t wanted = std::min(std::max(fair, 2 * worker.threads), maxLeaseTiles);
-  Message message = {leaseTag, m_result->finishedSamples, m_result->begunSamples};
+  RankMessage message = {leaseTag, m_result->finishedSamples, m_result->begunSamples};
   writeTiles(m_pass->take(wanted), m_result->film, message);
   const std::vector<float>& plan = m_result->last.plan.noise();
   if (!plan.empty() && !std::exchange(worker.hasPlan, true))

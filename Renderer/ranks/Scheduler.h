@@ -34,8 +34,8 @@ private:
   void serve(const std::stop_token& end);
   bool receiveResults();
   void dispatchTiles();
-  void acceptResult(const Message& message);
-  Message makeLease(Worker& worker);
+  void acceptResult(const RankMessage& message);
+  RankMessage makeLease(Worker& worker);
   Counters join(const RenderMonitor& monitor);
 
   Ranks& m_ranks;

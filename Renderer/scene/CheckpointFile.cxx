@@ -105,8 +105,9 @@ CheckpointFile::CheckpointFile(const fs::path& path) : m_path(path) {
                          ? parseNumber<std::uint64_t>(line.substr(magic.size(), end - magic.size()))
                          : std::nullopt;
   if (!bytes)
-    throw inputError(path, "is not a checkpoint of this version of Fenestra; choose another file, "
-                           "or move it away to start over");
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "is not a checkpoint of this version of Fenestra; choose another file, "
+                     "or move it away to start over");
   const std::uint64_t size = fs::file_size(path);
   std::array<std::uint64_t, 1> digest = {};
   if (*bytes > maxTextBytes || size < end + 1 + *bytes + sizeof digest)
@@ -136,7 +137,8 @@ CheckpointFile::CheckpointFile(const fs::path& path) : m_path(path) {
 }
 
 Error CheckpointFile::makeDamageError() const {
-  return inputError(m_path, "is a damaged checkpoint; delete it, and render again");
+  return inputError(ErrorCode::damagedFile, m_path,
+                    "is a damaged checkpoint; delete it, and render again");
 }
 
 std::ifstream CheckpointFile::open(std::uint64_t position) const {

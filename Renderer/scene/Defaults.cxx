@@ -19,9 +19,9 @@ ViewDirection findView(const std::string& name, const ViewDirection* best) {
     return *best;
   const auto known = views.find(name);
   if (known == views.end())
-    throw usageError("--view: '" + name +
-                     "' is unknown; use anterior, posterior, left, right, superior, inferior, or "
-                     "auto with a focus");
+    throw requestError(ErrorCode::unknownName, "view", "'", name,
+                       "' is unknown; use anterior, posterior, left, right, superior, inferior, or "
+                       "auto with a focus");
   return known->second;
 }
 
@@ -251,11 +251,11 @@ CameraPose adjustView(const ViewRequest& view, const CameraPose& scene) {
   pose.projection = view.projection.value_or(scene.projection);
   const bool perspective = pose.projection == Projection::perspective;
   if (perspective && view.scale)
-    throw usageError("--scale: the scene's camera is perspective; use --angle, or add --projection "
-                     "orthographic");
+    throw requestError(ErrorCode::scaleOfPerspectiveCamera, "scale",
+                       "the scene's camera is perspective");
   if (!perspective && view.angle)
-    throw usageError("--angle: the scene's camera is orthographic; use --scale, or add "
-                     "--projection perspective");
+    throw requestError(ErrorCode::angleOfOrthographicCamera, "angle",
+                       "the scene's camera is orthographic");
   pose.target = view.target.value_or(scene.target);
   pose.up = view.up.value_or(scene.up);
   pose.scale = view.scale.value_or(scene.scale);

@@ -42,12 +42,12 @@ TransferFunction makeRelativeTransfer(const Volume& volume);
 /// axes. They frame the focus and its surroundings, or `framed` if that is smaller. If the frame
 /// around a focus extends beyond an end of the scan, it is moved up or down, unless the request
 /// sets the target, position or scale.
-/// `best`: direction of the view "auto"; null: anterior. Throws Error (usage) for an unknown view
+/// `best`: direction of the view "auto"; null: anterior. Throws Error (request) for an unknown view
 /// name.
 CameraPose frameView(const ViewRequest& view, const Domain& framed, const Mask* focus, int width,
                      int height, const ViewDirection* best = nullptr);
 
-/// The scene's camera with the set members of the request. Throws Error (usage) if --scale or
+/// The scene's camera with the set members of the request. Throws Error (request) if --scale or
 /// --angle belongs to the other projection.
 CameraPose adjustView(const ViewRequest& view, const CameraPose& scene);
 

@@ -19,9 +19,9 @@ double meanDepth(const PixelSums& pixel) {
 LayerSet parseLayers(const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (!allLayers.contains(name))
-      throw usageError("--layers: '" + name +
-                       "' is unknown; use color, depth, clip, albedo, normal, error, samples, "
-                       "denoised, expected");
+      throw requestError(ErrorCode::unknownName, "layers", "'", name,
+                         "' is unknown; use color, depth, clip, albedo, normal, error, samples, "
+                         "denoised, expected");
   return names.empty() ? allLayers : LayerSet(names.begin(), names.end());
 }
 

@@ -17,7 +17,7 @@ using LayerSet = std::set<std::string>;
 inline const LayerSet allLayers = {"color", "depth",   "clip",     "albedo",  "normal",
                                    "error", "samples", "denoised", "expected"};
 
-/// Layers with these names; an empty list selects all. Throws Error (usage) for an unknown name.
+/// Layers with these names; an empty list selects all. Throws Error (request) for an unknown name.
 LayerSet parseLayers(const std::vector<std::string>& names);
 
 Image makeImage(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers);

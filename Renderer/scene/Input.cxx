@@ -151,7 +151,7 @@ SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) con
     if (!plan.segmentation && fileExists(*choice.segmentation))
       return readFile();
     if (!plan.segmentation)
-      throw inputError(scene.document.source(),
+      throw inputError(ErrorCode::unknownName, scene.document.source(),
                        "has no segmentation \"" + *choice.segmentation +
                            "\", and no such file exists; fenestra inspect lists the segmentations");
     Segmentation segmentation =

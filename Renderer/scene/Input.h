@@ -1,6 +1,7 @@
 #pragma once
 // Input of a request: a volume file, a DICOM folder, or a Slicer scene with its settings.
 
+#include "base/Error.h"
 #include "files/segments/SegmentationReader.h"
 #include "model/camera/Background.h"
 #include "model/camera/Camera.h"
@@ -33,7 +34,7 @@ struct SceneSettings {
   std::optional<CropBox> crop = {};
   std::optional<CameraPose> camera = {};
   std::optional<Background> background = {};
-  std::vector<std::string> warnings = {};
+  std::vector<Message> warnings = {};
   InputFiles files = {};
 };
 

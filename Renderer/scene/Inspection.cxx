@@ -46,7 +46,7 @@ struct FileVolume {
 /// Reports what a render uses of the input, with its warnings or its error.
 FileVolume inspectVolume(const RenderRequest& request, const Input& input, Json& report) {
   FileVolume result;
-  const auto add = [&](const Volume& volume, const std::vector<std::string>& warnings) {
+  const auto add = [&](const Volume& volume, const std::vector<Message>& warnings) {
     report["render"] = makeRenderReport();
     report["render"]["volume"] = volumeJson(volume);
     report["render"]["look"] = defaultTransferJson(volume);
@@ -60,7 +60,7 @@ FileVolume inspectVolume(const RenderRequest& request, const Input& input, Json&
     report["render"]["camera"] = poseJson(scene.camera().pose());
   } catch (const Error& error) {
     result.failure = error;
-    report["refused"] = error.what();
+    report["refused"] = error.message();
     Json unused;
     if (const auto read = tryRead([&] { return input.volume(request.volume); }, unused))
       add(read->volume, read->volume.warnings);
@@ -135,6 +135,15 @@ Json inspectFiles(const RenderRequest& request, const Input& input) {
 }
 
 } // namespace
+
+void to_json(Json& json, const Message& message) {
+  json = {{"code", message.code}, {"subject", message.subject}, {"detail", message.detail}};
+}
+
+void from_json(const Json& json, Message& message) {
+  message = {json.at("code").get<ErrorCode>(), json.at("subject").get<std::string>(),
+             json.at("detail").get<std::string>()};
+}
 
 Json nullIfEmpty(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);

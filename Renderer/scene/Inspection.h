@@ -35,12 +35,16 @@ namespace fenestra {
 ///       segmentationProblem (why it is ambiguous), stored [option stored in the scene by
 ///       Fenestra's extension]
 ///     refused: null, or the error message of a render
-///     warnings [line], ignored [line]
+///     warnings [message], ignored [line]
 ///
 /// NODE: id, name, files [name (as in the scene, URL-decoded), there], transform (id of its parent
 /// transform), used (by a render), problem (null, or the error message from reading it).
 /// POSE: projection, position, target, up, scale | angle.
 using Inspection = nlohmann::ordered_json;
+
+/// Messages in a report, which the program turns into lines: {"code", "subject", "detail"}.
+void to_json(nlohmann::ordered_json& json, const Message& message);
+void from_json(const nlohmann::ordered_json& json, Message& message);
 
 /// `input`: of request.input. Of the request, only volume and segmentation are used. Reads the
 /// files that a render would read, and all segmentations, cameras and transforms (names only after

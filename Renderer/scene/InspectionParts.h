@@ -13,13 +13,13 @@ namespace fenestra {
 
 using Json = nlohmann::ordered_json; ///< a report, or part of it
 
-/// Returns the result of `read`. On Error, stores its message in `line` and returns nothing.
+/// Returns the result of `read`. On Error, stores its message in `problem` and returns nothing.
 template <typename Read>
-auto tryRead(Read&& read, Json& line) -> std::optional<decltype(read())> {
+auto tryRead(Read&& read, Json& problem) -> std::optional<decltype(read())> {
   try {
     return read();
   } catch (const Error& error) {
-    line = error.what();
+    problem = error.message();
     return std::nullopt;
   }
 }

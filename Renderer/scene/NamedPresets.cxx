@@ -15,6 +15,9 @@
 namespace fenestra {
 namespace {
 
+constexpr const char* inlineTransfer = "transfer function"; ///< source of inline JSON
+constexpr const char* inlineLights = "lights";
+
 /// JSON of the built-in preset `name` under Resources/<kind>/; empty if there is none.
 std::string_view findBuiltinPreset(const std::string& kind, const std::string& name) {
   return findResource(kind + "/" + name + ".json");
@@ -31,11 +34,11 @@ bool isExistingFile(const std::string& name) {
 
 /// Error for an unknown name. A path in an inaccessible folder gets a reading error; any other name
 /// might be a misspelled preset.
-Error makeUnknownError(const std::string& flag, const std::string& name, const std::string& known) {
+Error makeUnknownError(const std::string& name, const std::string& known) {
   std::error_code failed;
   if (name.find('/') != std::string::npos && !std::filesystem::exists(name, failed) && failed)
     return readError(name, failed.value(), "check the permissions of its folder");
-  return inputError(name, "no such file or preset; --" + flag + " takes " + known);
+  return inputError(ErrorCode::unknownName, name, "no such file or preset; expected ", known);
 }
 
 /// Volume properties of a scene, by name or id, and the presets of an installed Slicer.
@@ -88,7 +91,7 @@ bool isFileName(const std::string& kind, const std::string& name) {
 
 NamedTransfer findTransfer(const std::string& name, const Input& input) {
   if (isInlineJson(name))
-    return {parseTransferJson(name, "--transfer"), "--transfer"};
+    return {parseTransferJson(name, inlineTransfer), inlineTransfer};
   if (const std::string_view text = findBuiltinPreset("transfer", name); !text.empty())
     return {parseTransferJson(text, name), name};
   if (isExistingFile(name))
@@ -96,9 +99,8 @@ NamedTransfer findTransfer(const std::string& name, const Input& input) {
   SlicerTransfers slicer(input);
   if (auto transfer = slicer.find(name))
     return std::move(*transfer);
-  throw makeUnknownError("transfer", name,
-                         "a file or one of " + joinNames(listBuiltinPresets("transfer")) +
-                             slicer.knownNames());
+  throw makeUnknownError(name, "a file or one of " + joinNames(listBuiltinPresets("transfer")) +
+                                   slicer.knownNames());
 }
 
 bool isTransferFile(const std::string& name, const Input& input) {
@@ -110,17 +112,16 @@ bool isTransferFile(const std::string& name, const Input& input) {
 
 NamedLights findLights(const std::string& name) {
   if (isInlineJson(name))
-    return {parseLights(name, "--lights"), "--lights"};
+    return {parseLights(name, inlineLights), inlineLights};
   if (const std::string_view text = findBuiltinPreset("lights", name); !text.empty())
     return {parseLights(text, name), name};
   if (!isExistingFile(name))
-    throw makeUnknownError("lights", name,
-                           "a file or one of " + joinNames(listBuiltinPresets("lights")));
+    throw makeUnknownError(name, "a file or one of " + joinNames(listBuiltinPresets("lights")));
   return {readLights(name), name, {name}};
 }
 
 bool isLightsFile(const std::string& name) {
-  return isInlineJson(name) ? hasFileReference(name, "--lights") : isFileName("lights", name);
+  return isInlineJson(name) ? hasFileReference(name, inlineLights) : isFileName("lights", name);
 }
 
 NamedMaterials findMaterials(const std::string& name) {
@@ -130,7 +131,7 @@ NamedMaterials findMaterials(const std::string& name) {
     return materials;
   }
   if (!isExistingFile(name))
-    throw makeUnknownError("materials", name, "none, auto, library, or a file");
+    throw makeUnknownError(name, "none, auto, library, or a file");
   return {parseMaterials(readText(name), name, materialLibrary()), name, {name}};
 }
 
@@ -142,7 +143,7 @@ OrganPreset findOrganPreset(const std::string& name) {
   if (const std::string_view text = findBuiltinPreset("presets", name); !text.empty())
     return parsePreset(text, name);
   if (!isExistingFile(name))
-    throw makeUnknownError("preset", name,
+    throw makeUnknownError(name,
                            "auto, a file, or one of " + joinNames(listBuiltinPresets("presets")));
   return parsePreset(readText(name), name);
 }

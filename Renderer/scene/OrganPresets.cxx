@@ -69,12 +69,11 @@ const OrganPreset& findMatchingPreset(const std::vector<OrganPreset>& presets,
     std::erase_if(matches,
                   [&](const OrganPreset* preset) { return !isSuitable(preset->modality); });
   if (matches.empty())
-    throw inputError(source, "--preset auto: no preset matches a segment (" +
-                                 joinSegmentNames(segments) +
-                                 "); choose a preset, and add --focus A,B,...");
+    throw inputError(ErrorCode::noMatchingPreset, source,
+                     "no preset matches a segment (" + joinSegmentNames(segments) + ")");
   if (matches.size() > 1)
-    throw inputError(source, "--preset auto: several presets match, " +
-                                 listMatches(matches, segments) + "; choose one");
+    throw inputError(ErrorCode::ambiguousPreset, source,
+                     "several presets match, " + listMatches(matches, segments));
   return *matches.front();
 }
 

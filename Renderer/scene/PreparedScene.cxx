@@ -8,7 +8,8 @@
 namespace fenestra {
 namespace {
 
-void append(const std::vector<std::string>& from, std::vector<std::string>& to) {
+template <typename Item>
+void append(const std::vector<Item>& from, std::vector<Item>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
@@ -166,8 +167,8 @@ std::string PreparedScene::choices() const {
   return join(parts, "; ");
 }
 
-std::vector<std::string> PreparedScene::warnings() const {
-  std::vector<std::string> warnings = m_request.omissions;
+std::vector<Message> PreparedScene::warnings() const {
+  std::vector<Message> warnings = m_request.omissions;
   append(volume().warnings, warnings);
   append(m_settings->warnings, warnings);
   if (m_segments.result())
@@ -175,7 +176,8 @@ std::vector<std::string> PreparedScene::warnings() const {
   append(m_transfer->warnings, warnings);
   append(*m_focusWarnings, warnings);
   if (domain().indexCorners().empty())
-    warnings.emplace_back("the crop box lies outside the volume, so the image is empty");
+    warnings.push_back(makeMessage(ErrorCode::emptyCrop, "crop box",
+                                   "lies outside the volume, so the image is empty"));
   append(m_clip->warnings, warnings);
   return warnings;
 }

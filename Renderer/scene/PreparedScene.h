@@ -67,7 +67,7 @@ public:
   const FeatureBuffers* features() const { return m_features.result().get(); }
   StageSeconds seconds() const;
   UpdatedStages updatedStages() const;
-  std::vector<std::string> warnings() const;
+  std::vector<Message> warnings() const;
   /// One-line summary of transfer function, lights and labels: what was chosen by default, and from
   /// which source.
   std::string choices() const;

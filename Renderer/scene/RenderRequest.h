@@ -1,6 +1,7 @@
 #pragma once
 // A render request: plain data, filled by the command line or by another client.
 
+#include "base/Error.h"
 #include "clip/surface/ClippingSurface.h"
 #include "integrator/render/Render.h"
 #include "model/camera/Camera.h"
@@ -108,7 +109,7 @@ struct RenderRequest {
   /// default transfer function, and a warning.
   std::optional<Modality> transferModality = {};
   /// Ignored parts of the user's request, with reasons; they precede the scene's warnings.
-  std::vector<std::string> omissions = {};
+  std::vector<Message> omissions = {};
 };
 
 } // namespace fenestra

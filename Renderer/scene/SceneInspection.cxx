@@ -265,7 +265,7 @@ private:
     std::error_code failed;
     if (!std::filesystem::exists(path, failed) && !failed) { // else its reader reports it
       m_report["render"]["segmentationProblem"] =
-          "--segmentation " + path.string() + ": neither a node of the scene nor a file";
+          makeMessage(ErrorCode::unknownName, path, "neither a node of the scene nor a file");
       return;
     }
     Json segmentation = inspectSegmentationFile(path, volumeGrid(), m_request.labels);

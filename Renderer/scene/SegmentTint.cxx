@@ -82,8 +82,8 @@ std::uint8_t findComponent(const SegmentMaterial& material, const std::string& s
       return static_cast<std::uint8_t>(i);
     }
   if (plan.components.size() == maxComponents)
-    throw inputError(source, "its segments have more than ", maxComponents - 1,
-                     " materials; assign one material to several with --materials FILE");
+    throw inputError(ErrorCode::tooManyMaterials, source, "its segments have more than ",
+                     maxComponents - 1, " materials");
   plan.components.push_back(material.medium);
   plan.names.push_back(segment);
   plan.isFocus.push_back(isFocus);
@@ -95,8 +95,8 @@ std::vector<bool> markFocus(const Segmentation& segmentation, const NamedMateria
                             const std::vector<std::string>& focus) {
   const ContextColors& context = materials.table.context;
   if (focus.empty() && (context.saturation || context.lightness))
-    throw inputError(materials.source,
-                     "context: needs a focus; add --focus, or remove this member");
+    throw inputError(ErrorCode::focusRequired, concat(materials.source, ": context"),
+                     "needs a focus");
   std::vector<bool> isFocus(segmentation.segments().size());
   if (materials.hasColorAdjustment())
     for (const std::string& selector : focus)
@@ -189,8 +189,8 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& input,
   }
   plan.parts = removeRedundant(std::move(plan.parts));
   if (plan.parts.empty())
-    throw inputError(segmentation.source(),
-                     "no segment has a voxel, so nothing can be colored; remove --materials");
+    throw inputError(ErrorCode::noVoxelToColor, segmentation.source(),
+                     "no segment has a voxel, so nothing can be colored");
   return plan;
 }
 

@@ -31,9 +31,9 @@ void checkExtinction(const TransferFunction& transfer, const Volume& volume,
   if (greatest <= allowed)
     return;
   TextWriter line;
-  line << "extinction: reaches " << greatest << " per mm, but " << allowed
-       << " is already opaque in any image of this volume; reduce it or --density";
-  throw inputError(name, line.str());
+  line << "reaches " << greatest << " per mm, but " << allowed
+       << " is already opaque in any image of this volume";
+  throw inputError(ErrorCode::excessiveExtinction, concat(name, ": extinction"), line.str());
 }
 
 /// Focus depths at the viewport's pixels, mm.
@@ -92,19 +92,19 @@ Domain makeDomain(const VolumeHandle& volume, const SettingsHandle& settings) {
 TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>& named,
                               const Handle<SceneTransfer>& scene,
                               const std::optional<Modality>& modality) {
-  std::vector<std::string> warnings;
+  std::vector<Message> warnings;
   if (named && !modality && named->source.starts_with("ct-") &&
       !isPlausibleModality(Modality::ct, volume))
-    warnings.push_back("the transfer function " + named->source +
-                       " is for CT, but this volume does not seem to be CT; move it with --shift, "
-                       "or choose another with --transfer");
+    warnings.push_back(makeMessage(ErrorCode::implausibleModality, named->source,
+                                   "the transfer function is for CT, but this volume does not seem "
+                                   "to be CT"));
   if (named && (!modality || isPlausibleModality(*modality, volume)))
     return {fitToVolume(named->transfer, volume), named->source, warnings};
   if (named)
-    warnings.push_back(concat(
+    warnings.push_back(makeMessage(
+        ErrorCode::implausiblePresetModality, named->source,
         "the preset's transfer function is for ", modalities[static_cast<std::size_t>(*modality)],
-        ", which does not seem to be this volume's modality; using a default, unless "
-        "--transfer names another"));
+        ", which does not seem to be this volume's modality, so a default is used"));
   else if (scene->transfer)
     return {*scene->transfer, scene->name};
   const std::optional<std::string> preset = chooseTransferPreset(volume);
@@ -205,23 +205,22 @@ TransferChoice chooseTransfer(const VolumeHandle& read, const Handle<NamedTransf
   transfer.function = transfer.function.withShift(shift).withDensity(density);
   checkExtinction(transfer.function, volume, named ? transfer.source : volume.name);
   if (transfer.function.shading && volume.minimum == volume.maximum)
-    throw inputError(volume.name,
+    throw inputError(ErrorCode::uniformVolume, volume.name,
                      "all voxels have the same value, so gradients for surface shading are zero; "
                      "use a transfer function with shading off (\"shading\": \"volume\")");
   return transfer;
 }
 
-std::vector<std::string> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
-                                    const Handle<TransferChoice>& transfer) {
+std::vector<Message> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
+                                const Handle<TransferChoice>& transfer) {
   constexpr double maxFraction = 0.5;
   if (!focus->mask)
     return {};
   const double fraction = transparentFraction(*focus->mask, volume->volume, transfer->function);
   if (fraction <= maxFraction)
     return {};
-  return {concat("the transfer function ", transfer->source, " makes ",
-                 std::lround(100.0 * fraction),
-                 " % of the focus transparent; choose another with --transfer or --preset")};
+  return {makeMessage(ErrorCode::transparentFocus, transfer->source, "the transfer function makes ",
+                      std::lround(100.0 * fraction), " % of the focus transparent")};
 }
 
 ViewDirection chooseView(const VolumeHandle& volume, const SettingsHandle& settings,
@@ -262,9 +261,9 @@ LightSet placeLights(const FramedLights& framed, const VolumeHandle& volume) {
     return {lights, grid, *framed.camera, computeCentroid(*focus)};
   const auto first = std::ranges::find_if(
       lights, [](const Light& light) { return hasFrame(LightFrame::focus, light); });
-  throw inputError(framed.lights->source, "lights[", first - lights.begin(),
-                   "].frame: is \"focus\", but there is no focus; add --focus, or use \"world\" or "
-                   "\"camera\"");
+  throw inputError(ErrorCode::focusRequired,
+                   concat(framed.lights->source, ": lights[", first - lights.begin(), "].frame"),
+                   "is \"focus\", but there is no focus");
 }
 
 ClipResult buildClip(const ClipRequest& request, bool measure, double steadyDegrees,

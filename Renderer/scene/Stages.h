@@ -1,6 +1,7 @@
 #pragma once
 // Stages of a scene after its input: pure functions whose arguments are cache keys (CachedStage.h).
 
+#include "base/Error.h"
 #include "clip/surface/ClippingSurface.h"
 #include "denoise/features/FeatureBuffers.h"
 #include "metrics/BoundaryMetrics.h"
@@ -36,7 +37,7 @@ FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<st
 struct TransferChoice {
   TransferFunction function;
   std::string source; ///< a file, a preset, a node, or "by the volume's range"
-  std::vector<std::string> warnings = {};
+  std::vector<Message> warnings = {};
 };
 /// Chooses the transfer function: `named`, unless `modality` is not the volume's, else the
 /// scene's, else a default for the volume. Then shifts it by `shift` and scales its extinction by
@@ -47,8 +48,8 @@ TransferChoice chooseTransfer(const VolumeHandle& volume, const Handle<NamedTran
                               double density);
 
 /// Warns if the transfer function leaves most of the focus transparent.
-std::vector<std::string> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
-                                    const Handle<TransferChoice>& transfer);
+std::vector<Message> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
+                                const Handle<TransferChoice>& transfer);
 
 /// Direction of the view that shows the focus best (AutomaticView.h).
 ViewDirection chooseView(const VolumeHandle& volume, const SettingsHandle& settings,
@@ -87,7 +88,7 @@ struct ClipResult {
   std::optional<Distribution> mismatch = {};
   std::optional<BoundaryMetrics> boundary = {}; ///< empty: not measured
   std::vector<ControlPoint> controlPoints = {}; ///< of a spline; empty for other clips
-  std::vector<std::string> warnings = {};
+  std::vector<Message> warnings = {};
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
 };
 ClipResult buildClip(const ClipRequest& request, bool measure, double steadyDegrees,

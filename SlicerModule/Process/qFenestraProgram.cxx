@@ -16,12 +16,13 @@ void endWithParent() {
 #endif
 }
 
-/// Last line of the renderer's messages, without the program's name.
+/// Last line of the renderer's messages, without the program's name and "error", which older
+/// programs omit.
 QString findLastLine(const QString& text) {
   QString line = text.trimmed().section('\n', -1);
-  const QString name = QStringLiteral("fenestra: ");
-  if (line.startsWith(name))
-    line.remove(0, name.size());
+  for (const QString& start : {QStringLiteral("fenestra: "), QStringLiteral("error: ")})
+    if (line.startsWith(start))
+      line.remove(0, start.size());
   return line;
 }
 

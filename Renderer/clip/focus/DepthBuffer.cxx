@@ -68,8 +68,8 @@ DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
   const double farthest = span.lower.cwiseAbs().cwiseMax(span.upper.cwiseAbs()).maxCoeff();
   if (!(pitch > 0.0) || !std::isfinite(pitch) || !(farthest / pitch < 1e15) ||
       std::min(camera.width(), camera.height()) < 1)
-    throw usageError("--scale, --angle and --size: the image is empty, or a pixel is smaller than "
-                     "1e-15 of the volume; use larger values");
+    throw requestError(ErrorCode::emptyImagePlane, "image plane",
+                       "it is empty, or a pixel is smaller than 1e-15 of the volume");
   // Samples: 4 Mi or 5/4 of the viewport, whichever is more, and room for one on each side of it.
   const std::int64_t limit = std::max<std::int64_t>(
       {4 << 20, m_x.inside * m_y.inside * 5 / 4, (m_x.inside + 2) * (m_y.inside + 2)});

@@ -87,7 +87,7 @@ class DepthBuffer {
 public:
   /// Initializes all depths to infinity. Beyond the viewport, samples have its pixel spacing, or
   /// the finest spacing for which the buffer fits in max(4 Mpixel, 5/4 of the viewport). Throws
-  /// Error (usage) if the viewport is empty.
+  /// Error (request) if the viewport is empty.
   DepthBuffer(const Camera& camera, const Grid& volume);
 
   const DepthAxis& xAxis() const { return m_x; }

@@ -129,7 +129,8 @@ FocusCells::FocusCells(const Mask& mask)
       m_valueScale(1.0 / mask.maxValue) {
   const std::int64_t bytes = m_blocks.prod() * static_cast<std::int64_t>(sizeof(BlockValues));
   if (bytes > std::numeric_limits<std::int32_t>::max())
-    throw inputError("focus", "spans more than 2^30 voxels; crop the segmentation");
+    throw inputError(ErrorCode::limitExceeded, "focus",
+                     "spans more than 2^30 voxels; crop the segmentation");
   m_blockCorners.resize(static_cast<std::size_t>(m_blocks.prod()), emptyBlock);
   m_corners.resize(2);
   m_corners[emptyBlock].fill(0);

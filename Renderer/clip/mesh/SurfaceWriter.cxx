@@ -94,7 +94,8 @@ Encoder findEncoder(const std::filesystem::path& path) {
       {".vtp", encodeVtp}, {".ply", encodePly}, {".stl", encodeStl}};
   const auto it = encoders.find(lowercaseExtension(path));
   if (it == encoders.end())
-    throw usageError("--surface ", path, ": unknown file extension; use .vtp, .ply or .stl");
+    throw requestError(ErrorCode::unsupportedFile, path,
+                       "unknown file extension; use .vtp, .ply or .stl");
   return it->second;
 }
 

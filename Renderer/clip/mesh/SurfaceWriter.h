@@ -13,12 +13,12 @@ namespace fenestra {
 /// - `.vtp`: VTK XML, points as doubles, depths as point data "depth".
 /// - `.ply`: binary, little endian, floats, depths as a property "depth" of the vertices.
 /// - `.stl`: binary, floats, no depths.
-/// Equal surfaces give equal bytes. Throws Error: (usage) for other extensions, (output) if the
+/// Equal surfaces give equal bytes. Throws Error: (request) for other extensions, (output) if the
 /// file cannot be written.
 void writeSurface(const SurfaceMesh& surface, const std::filesystem::path& path, Outputs& outputs);
 
-/// Declares the output file before a long render. Throws Error (usage) for other extensions, and as
-/// Outputs does.
+/// Declares the output file before a long render. Throws Error (request) for other extensions, and
+/// as Outputs does.
 void declareSurface(const std::filesystem::path& path, Outputs& outputs);
 
 } // namespace fenestra

@@ -15,9 +15,9 @@ namespace {
 
 void checkOptions(const SurfaceOptions& options) {
   if (options.controlPoints < 1 || options.controlPoints > 1000)
-    throw usageError("--controlpoints: must be from 1 to 1000");
+    throw requestError(ErrorCode::invalidValue, "control points", "must be from 1 to 1000");
   if (!(options.smoothing >= 0.0 && options.smoothing <= 1.0))
-    throw usageError("--smoothing: must be from 0 to 1");
+    throw requestError(ErrorCode::invalidValue, "spline smoothing", "must be from 0 to 1");
 }
 
 std::string describeFocus(const Mask& focus) {
@@ -174,8 +174,8 @@ ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& optio
   surface.mismatch = measureMismatch(spline, findBoundarySamples(surface.focus, contours));
   const auto requested = static_cast<std::size_t>(options.controlPoints);
   if (surface.controlPoints.size() < std::min<std::size_t>(3, requested))
-    surface.warnings.push_back("the focus covers hardly a pixel, so the clipping surface is flat; "
-                               "use a larger --size, or a view that frames the focus");
+    surface.warnings.push_back(makeMessage(
+        ErrorCode::tinyFocus, "focus", "covers hardly a pixel, so the clipping surface is flat"));
   return spline;
 }
 
@@ -184,9 +184,9 @@ ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& optio
 void requireVisible(const FocusDepth& focus, const Mask& mask) {
   if (std::ranges::find(focus.regions, Region::focus) == focus.regions.end())
     throw inputError(
-        describeFocus(mask),
+        ErrorCode::hiddenFocus, describeFocus(mask),
         "is not visible: it is outside the volume or its crop box, behind the camera, or smaller "
-        "than a pixel; choose another --focus or view");
+        "than a pixel");
 }
 
 ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,
@@ -197,8 +197,8 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   ClippingSurface surface{.clip = {}, .focus = tracer->traceDepths()};
   requireVisible(surface.focus, focus);
   if (!isInViewport(surface.focus))
-    surface.warnings.push_back(describeFocus(focus) + " is outside the image; change --view, "
-                                                      "--target or --scale");
+    surface.warnings.push_back(
+        makeMessage(ErrorCode::focusOutsideImage, describeFocus(focus), "is outside the image"));
   surface.focusSeconds = stopwatch.lap();
 
   auto buffer = std::make_shared<DepthBuffer>(surface.focus.depth);

@@ -2,6 +2,7 @@
 // First pass of the method, once per view: builds the clip that shows the focus.
 
 #include "base/Distribution.h"
+#include "base/Error.h"
 #include "clip/field/Clip.h"
 #include "clip/focus/Contour.h"
 #include "clip/focus/FocusDepth.h"
@@ -44,7 +45,7 @@ struct ClippingSurface {
   /// Spline f only: |f(x) - z|, mm, at the focus samples on the contours, at x with depth z.
   std::optional<Distribution> mismatch{};
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
-  std::vector<std::string> warnings{};
+  std::vector<Message> warnings{};
 };
 
 /// Throws Error (input) if no sample is focus.
@@ -55,7 +56,7 @@ void requireVisible(const FocusDepth& focus, const Mask& mask);
 /// samples do not determine a tilt, the plane faces the camera.
 ClipPlane fitFocusPlane(const Camera& camera, const FocusDepth& focus);
 
-/// Throws Error (usage) for options out of range, and Error (input) if no ray hits the focus.
+/// Throws Error (request) for options out of range, and Error (input) if no ray hits the focus.
 ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,
                                      const SurfaceOptions& options);
 

@@ -171,7 +171,8 @@ bool hasFileReference(std::string_view json, const std::string& source) {
 
 EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
   if (lowercaseExtension(path) != ".exr")
-    throw inputError(path, "is not an environment map; give a .exr file");
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "is not an environment map; give a .exr file");
   const Image image = readImage(path);
   EnvironmentMap map{image.width, image.height, {}};
   const auto width = static_cast<std::size_t>(image.width);

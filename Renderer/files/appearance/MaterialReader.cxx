@@ -166,7 +166,7 @@ void applyFields(const JsonNode& fields, const MaterialTable& table, SegmentMedi
 }
 
 std::string describeSource(const MaterialChange& change) {
-  return "--material " + sanitize(change.selector);
+  return "material " + sanitize(change.selector);
 }
 
 } // namespace
@@ -208,7 +208,7 @@ MaterialChange parseMaterialChange(const std::string& text, const MaterialTable&
   MaterialChange change{std::string(trim(text.substr(0, std::min(colon, text.size())))),
                         nlohmann::json::object()};
   if (colon == std::string::npos || change.selector.empty())
-    throw inputError("--material " + sanitize(text),
+    throw inputError(ErrorCode::invalidField, "material " + sanitize(text),
                      "must give a segment and what to change, as in \"Liver: color=#963e2e\"");
   for (const std::string& field : split(toOneLine(text.substr(colon + 1)), ',')) {
     const std::size_t equals = field.find('=');

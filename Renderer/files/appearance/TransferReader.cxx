@@ -146,10 +146,10 @@ public:
 private:
   Error error(const std::string& field, const std::string& what) const {
     if (m_form == PropertyForm::attributes)
-      return inputError(m_source, field, ": ", what);
+      return fieldError(m_source, field, what);
     const auto* const line = std::find(std::begin(propertyFields), std::end(propertyFields), field);
-    return inputError(m_source, "line ", line - std::begin(propertyFields) + 1, " (", field,
-                      "): ", what);
+    return fieldError(
+        m_source, concat("line ", line - std::begin(propertyFields) + 1, " (", field, ")"), what);
   }
 
   std::vector<double> numbers(const std::string& field) const {
@@ -233,7 +233,8 @@ TransferFile readTransferFile(const std::filesystem::path& path) {
   const std::string source = path.string();
   const std::string extension = lowercaseExtension(path);
   if (extension != ".vp" && extension != ".json")
-    throw inputError(source, "is not a transfer function; give a .vp, .vp.json or .json file");
+    throw inputError(ErrorCode::unsupportedFile, source,
+                     "is not a transfer function; give a .vp, .vp.json or .json file");
   const std::string text = readText(path);
   return extension == ".vp" ? TransferFile{tabulate(readVp(text, source), source)}
                             : parseTransferJson(text, source);
@@ -242,7 +243,8 @@ TransferFile readTransferFile(const std::filesystem::path& path) {
 TransferFunction readTransferFunction(const std::filesystem::path& path) {
   TransferFile file = readTransferFile(path);
   if (file.isRelative)
-    throw inputError(path, "scalars: are relative to a volume; give a file with absolute scalars");
+    throw fieldError(path, "scalars",
+                     "are relative to a volume; give a file with absolute scalars");
   return std::move(file.function);
 }
 

@@ -39,7 +39,8 @@ private:
     CsvRecord record{m_line, {}};
     for (;;) {
       if (++m_fields > maxFields)
-        throw inputError(m_source, "holds more than ", maxFields, " fields; split it");
+        throw inputError(ErrorCode::limitExceeded, m_source, "holds more than ", maxFields,
+                         " fields; split it");
       record.fields.push_back(isAt('"') ? readQuotedField() : readPlainField());
       if (!isAt(m_separator))
         break;
@@ -61,15 +62,15 @@ private:
     std::string field;
     for (++m_at; !isAt('"') || m_text.substr(m_at).starts_with("\"\""); ++m_at) {
       if (m_at == m_text.size())
-        throw inputError(m_source, "line ", firstLine, ": quotes are not closed; close them");
+        throw fieldError(m_source, concat("line ", firstLine), "quotes are not closed; close them");
       m_at += isAt('"') ? 1 : 0; // a doubled quote stands for one
       m_line += isAt('\n') ? 1 : 0;
       field += m_text[m_at];
     }
     ++m_at;
     if (!isAtLineEnd() && !isAt(m_separator))
-      throw inputError(m_source, "line ", m_line,
-                       ": text follows closing quotes; double the quotes within a field");
+      throw fieldError(m_source, concat("line ", m_line),
+                       "text follows closing quotes; double the quotes within a field");
     return field;
   }
 

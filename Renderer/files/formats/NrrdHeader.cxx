@@ -30,12 +30,12 @@ std::string toKey(std::string_view name) {
 void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
   const auto axes = parseInteger(findValue(fields, "dimension"));
   if (!axes || *axes < 1 || *axes > 10)
-    throw inputError(path, "dimension: must be an integer from 1 to 10");
+    throw fieldError(path, "dimension", "must be an integer from 1 to 10");
   if (!fields.contains("sizes"))
     throw damagedError(path, "NRRD");
   for (const std::string& word : splitWords(fields.at("sizes")))
     if (const auto size = parseInteger(word); !size || *size < 1 || *size > INT32_MAX)
-      throw inputError(path, "sizes: each must be an integer from 1 to 2147483647");
+      throw fieldError(path, "sizes", "each must be an integer from 1 to 2147483647");
 }
 
 /// Lengths of the vectors in parentheses; nullopt: malformed vector.
@@ -77,10 +77,10 @@ void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields) {
     return length >= 1.0 / maxSpacing && length <= maxSpacing;
   };
   if (!lengths || !std::all_of(lengths->begin(), lengths->end(), isUsable))
-    throw inputError(
-        path, "space directions: each must be a vector of 1e-9 to 1e9 mm, or none; fix the header");
+    throw fieldError(path, "space directions",
+                     "each must be a vector of 1e-9 to 1e9 mm, or none; fix the header");
   if (!lengths->empty() && lengths->size() < std::min<std::size_t>(countSpatialAxes(fields), 3))
-    throw inputError(path, "space directions: has ", lengths->size(),
+    throw fieldError(path, "space directions", "has ", lengths->size(),
                      " vectors; write one per spatial axis");
 }
 
@@ -100,11 +100,11 @@ void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
                                    {"axis maxs", "write space directions and space origin"},
                                    {"units", "write space units"}})
     if (hasSpace && fields.contains(toKey(name)))
-      throw inputError(path, name, ": cannot be combined with a space; ", hint);
+      throw fieldError(path, name, "cannot be combined with a space; ", hint);
   for (const char* name : {"axis mins", "axis maxs"})
     if (fields.contains(toKey(name)) && !fields.contains("spacings"))
-      throw inputError(path, name,
-                       ": requires spacings; add them, or a space with its directions and origin");
+      throw fieldError(path, name,
+                       "requires spacings; add them, or a space with its directions and origin");
 }
 
 void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
@@ -113,7 +113,7 @@ void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
   if (name.empty() || hasTime)
     return;
   if (const std::size_t count = countSpatialAxes(fields); count > 3)
-    throw inputError(path, "kinds: ", count,
+    throw fieldError(path, "kinds", count,
                      " spatial axes in a space of three dimensions; extract one frame");
 }
 
@@ -121,7 +121,7 @@ void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
 void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) {
   for (const char* name : {"space directions", "space origin", "spacings"})
     if (toLower(findValue(fields, toKey(name))).find("nan") != std::string::npos)
-      throw inputError(path, name, ": is not a number; fix the header");
+      throw fieldError(path, name, "is not a number; fix the header");
   checkNrrdVectors(path, fields);
   checkNrrdAxes(path, fields);
   checkNrrdKinds(path, fields);
@@ -139,12 +139,12 @@ public:
     if (!line)
       return std::nullopt;
     if (++m_count > maxLines)
-      throw inputError(m_path, "header: has more than ", maxLines,
+      throw fieldError(m_path, "header", "has more than ", maxLines,
                        " lines; remove some of its key:=value lines");
     if (hasControlCharacter(*line))
       throw damagedError(m_path, "NRRD");
     if (line->size() > maxLineBytes && !isKeyValue(*line))
-      throw inputError(m_path, "header: line ", m_count, " has more than ", maxLineBytes,
+      throw fieldError(m_path, "header", "line ", m_count, " has more than ", maxLineBytes,
                        " bytes and is not key:=value; shorten it");
     return line;
   }
@@ -176,7 +176,7 @@ Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
     const std::string key = toKey(line->substr(0, colon));
     const auto [field, isNew] = fields.emplace(key, trim(line->substr(colon + 2)));
     if (!isNew) // teem would use one of the two values
-      throw inputError(path, key.substr(0, 40), ": occurs twice; remove one");
+      throw fieldError(path, key.substr(0, 40), "occurs twice; remove one");
     if (key == "datafile" && field->second.starts_with("LIST"))
       break; // the file names follow
   }
@@ -187,7 +187,7 @@ Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
 
 void checkNrrdPath(const std::filesystem::path& path) {
   if (path.string().size() > maxPathBytes)
-    throw inputError(path, "has a path of more than ", maxPathBytes,
+    throw inputError(ErrorCode::limitExceeded, path, "has a path of more than ", maxPathBytes,
                      " bytes; move it to a folder with a shorter path");
 }
 
@@ -200,7 +200,7 @@ void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
   for (char c = 0; file.get(c);) {
     length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
     if (length > maxLineBytes)
-      throw inputError(header, "samples: a number has more than ", maxLineBytes,
+      throw fieldError(header, "samples", "a number has more than ", maxLineBytes,
                        " characters; write the file again");
   }
 }
@@ -221,7 +221,7 @@ NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
   if (findValue(header.fields, "datafile").starts_with("LIST"))
     for (auto line = lines.next(); line; line = lines.next()) {
       if (trim(*line).empty()) // teem would take it as a file name
-        throw inputError(path, "data file: its LIST has an empty line; remove it");
+        throw fieldError(path, "data file", "its LIST has an empty line; remove it");
       header.files.emplace_back(trim(*line));
     }
   return header;

@@ -28,7 +28,8 @@ inline std::string findValue(const Fields& fields, const std::string& key) {
 }
 
 inline Error damagedError(const std::filesystem::path& path, const std::string& format) {
-  return inputError(path, "is not a ", format, " file, or its header is damaged; write it again");
+  return inputError(ErrorCode::damagedFile, path, "is not a ", format,
+                    " file, or its header is damaged; write it again");
 }
 
 /// Throws Error (input) if `unit` is a length other than mm: all readers take lengths as mm. Units
@@ -42,8 +43,7 @@ inline void checkMillimeters(const std::filesystem::path& path, const std::strin
       "centimeter", "centimeters", "centimetre", "centimetres", "micrometer", "micrometers",
       "micrometre", "micrometres", "foot",       "feet"};
   if (others.contains(toLower(unit)))
-    throw inputError(path, field, ": \"", unit,
-                     "\" is not supported; scale the geometry to \"mm\"");
+    throw fieldError(path, field, "\"", unit, "\" is not supported; scale the geometry to \"mm\"");
 }
 
 /// True if there is a control character other than a tab. Libraries end a line at a zero byte or a

@@ -39,11 +39,12 @@ void checkSize(const std::filesystem::path& path, std::int64_t width, std::int64
     throw inputError(path, "is ", size, " pixels; each side must be 1 to ", maxSide);
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
   if (channels > ((1 << 20) + 4096 * bytes) / (width * height))
-    throw inputError(path, "is too short for ", channels, " channels of ", size,
-                     " pixels; write it again");
+    throw inputError(ErrorCode::damagedFile, path, "is too short for ", channels, " channels of ",
+                     size, " pixels; write it again");
   if (channels > maxSamples / (width * height))
-    throw inputError(path, "has ", width * height * channels, " samples, more than the limit of ",
-                     maxSamples, "; reduce pixels or channels");
+    throw inputError(ErrorCode::limitExceeded, path, "has ", width * height * channels,
+                     " samples, more than the limit of ", maxSamples,
+                     "; reduce pixels or channels");
 }
 
 // ---- EXR
@@ -132,9 +133,10 @@ void checkExr(const std::filesystem::path& path, const Imf::Header& header) {
   std::int64_t channels = 0;
   for (auto it = header.channels().begin(); it != header.channels().end(); ++it, ++channels)
     if (it.channel().xSampling != 1 || it.channel().ySampling != 1)
-      throw inputError(path, "has subsampled channels; write them at full resolution");
+      throw inputError(ErrorCode::unsupportedFile, path,
+                       "has subsampled channels; write them at full resolution");
   if (header.hasType() && Imf::isDeepData(header.type()))
-    throw inputError(path, "has deep pixels; flatten the image first");
+    throw inputError(ErrorCode::unsupportedFile, path, "has deep pixels; flatten the image first");
   checkSize(path, std::int64_t{window.max.x} - window.min.x + 1,
             std::int64_t{window.max.y} - window.min.y + 1, channels);
 }
@@ -160,7 +162,8 @@ Image readExr(const std::filesystem::path& path) {
   Imf::InputFile file(path.c_str());
   checkExr(path, file.header());
   if (!file.isComplete())
-    throw inputError(path, "lacks some scan lines or tiles; write it again");
+    throw inputError(ErrorCode::damagedFile, path,
+                     "lacks some scan lines or tiles; write it again");
   const auto window = file.header().dataWindow();
   Image image;
   image.width = window.max.x - window.min.x + 1;
@@ -248,10 +251,11 @@ void checkTiff(const std::filesystem::path& path, TIFF* tiff) {
       readTiffField(tiff, TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_UINT;
   if (!isSupported || samples < 1 || samples > 4 || TIFFIsTiled(tiff) ||
       readTiffField(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)
-    throw inputError(path, "is not 8- or 16-bit gray or RGB in interleaved rows; convert it");
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "is not 8- or 16-bit gray or RGB in interleaved rows; convert it");
   if (const auto orientation = readTiffField(tiff, TIFFTAG_ORIENTATION);
       orientation != ORIENTATION_TOPLEFT)
-    throw inputError(path, "Orientation: is ", orientation,
+    throw fieldError(path, "Orientation", "is ", orientation,
                      ", so the image is rotated or mirrored; save it upright");
 }
 
@@ -295,13 +299,15 @@ bool isSingleImage(const itk::ImageIOBase& io) {
 
 Image readNrrd(const std::filesystem::path& path) {
   if (readNrrdHeader(path).fields.contains("datafile"))
-    throw inputError(path, "has its samples in another file; store them in this one");
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "has its samples in another file; store them in this one");
   const auto io = itk::NrrdImageIO::New();
   io->SetFileName(path.string());
   io->ReadImageInformation();
   const auto names = chooseChannelNames(ImageFormat::nrrd, io->GetNumberOfComponents());
   if (!isSingleImage(*io) || names.empty() || io->GetComponentType() != itk::IOComponentEnum::FLOAT)
-    throw inputError(path, "is not one slice of 1, 3 or 4 floats per pixel; extract one");
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "is not one slice of 1, 3 or 4 floats per pixel; extract one");
   const std::size_t width = io->GetDimensions(0), height = io->GetDimensions(1);
   checkSize(path, static_cast<std::int64_t>(width), static_cast<std::int64_t>(height),
             io->GetNumberOfComponents());
@@ -316,7 +322,8 @@ Image readImage(const std::filesystem::path& path) {
   requireFile(path, "give an image in it");
   const auto format = findImageFormat(path);
   if (!format)
-    throw inputError(path, "has an unknown extension; give an image ", imageExtensions);
+    throw inputError(ErrorCode::unsupportedFile, path, "has an unknown extension; give an image ",
+                     imageExtensions);
   try {
     switch (*format) {
     case ImageFormat::exr:
@@ -332,12 +339,13 @@ Image readImage(const std::filesystem::path& path) {
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
-    throw inputError(path, "does not fit into memory; use a smaller image");
+    throw inputError(ErrorCode::outOfMemory, path, "does not fit into memory; use a smaller image");
   } catch (const itk::ExceptionObject&) { // its text names ITK's source lines
-    throw inputError(path, "is damaged or does not match its extension; write it again");
+    throw inputError(ErrorCode::damagedFile, path,
+                     "is damaged or does not match its extension; write it again");
   } catch (const std::exception& error) {
     const std::string_view text = error.what();
-    throw inputError(path, "is damaged or does not match its extension (",
+    throw inputError(ErrorCode::damagedFile, path, "is damaged or does not match its extension (",
                      text.substr(0, text.find('\n')), "); write it again");
   }
 }

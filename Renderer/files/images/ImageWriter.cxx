@@ -182,7 +182,8 @@ std::string encodeTiff(const Image& image, const std::vector<float>& rgba,
     good = TIFFWriteScanline(tiff.get(), &values[row * rowLength],
                              static_cast<std::uint32_t>(row)) == 1;
   if (!good || TIFFFlush(tiff.get()) != 1)
-    throw outputError("image as TIFF", "does not fit into memory; write it as .exr");
+    throw outputError(ErrorCode::outOfMemory, "image as TIFF",
+                      "does not fit into memory; write it as .exr");
   return sealProvenanceTag(stream.str());
 }
 
@@ -245,13 +246,15 @@ bool isFenestraDepth(const std::filesystem::path& depth, const std::filesystem::
 ImageFormat requireFormat(const std::filesystem::path& path) {
   if (const auto format = findImageFormat(path))
     return *format;
-  throw usageError("--output ", path, ": has an unknown extension; give a file ", imageExtensions);
+  throw requestError(ErrorCode::unsupportedFile, path, "has an unknown extension; give a file ",
+                     imageExtensions);
 }
 
 void requireColor(const Image& image, const std::filesystem::path& path) {
   for (const char* name : {"R", "G", "B"})
     if (!image.find(name))
-      throw usageError(path, ": the image has no channel ", name, "; write it as .exr");
+      throw requestError(ErrorCode::unsupportedFile, path, "the image has no channel ", name,
+                         "; write it as .exr");
 }
 
 } // namespace

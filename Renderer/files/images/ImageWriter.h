@@ -19,13 +19,13 @@ namespace fenestra {
 ///   denoised.R, G, B, A to the vector volume "<stem>-denoised.nrrd".
 /// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through the display transform, with straight
 ///   alpha if any pixel is not opaque. A comment holds tone, exposure and the header's "filter".
-/// Equal images give equal bytes, and every file has Fenestra's provenance tag. Throws Error: usage
-/// for another extension or missing R, G, B; output if the file cannot be written.
+/// Equal images give equal bytes, and every file has Fenestra's provenance tag. Throws Error:
+/// request for another extension or missing R, G, B; output if the file cannot be written.
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
                 Outputs& outputs, const Display& display = {});
 
 /// Lists the files that writeImage may write for this path: the path itself and, for `.nrrd`, the
-/// depth and denoised files beside it. Throws Error (usage) for another extension.
+/// depth and denoised files beside it. Throws Error (request) for another extension.
 std::vector<std::filesystem::path> listImageFiles(const std::filesystem::path& path);
 
 /// Whether the user named the file, or Fenestra chose its default name.

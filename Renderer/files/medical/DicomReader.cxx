@@ -189,9 +189,8 @@ std::optional<DicomHeader> DicomReader::readHeader(const Path& path) {
       return parseDicomHeader(*reply);
   } catch (const std::runtime_error&) { // malformed reply
   }
-  throw inputError(
-      path,
-      "DICOM header: cannot be read; export the series again, or remove the file from its folder");
+  throw inputError(ErrorCode::unreadableFile, concat(path, ": DICOM header"),
+                   "cannot be read; export the series again, or remove the file from its folder");
 }
 
 std::string DicomReader::readVoxels(const Path& path, const DicomHeader& h) {
@@ -200,29 +199,33 @@ std::string DicomReader::readVoxels(const Path& path, const DicomHeader& h) {
   if (reply && reply->size() == size)
     return std::move(*reply);
   if (h.isCompressed)
-    throw inputError(path, "PixelData: cannot be decoded; export the series without compression");
-  throw inputError(path, "PixelData: is damaged, truncated or deflated; export the series again");
+    throw inputError(ErrorCode::damagedFile, concat(path, ": PixelData"),
+                     "cannot be decoded; export the series without compression");
+  throw inputError(ErrorCode::damagedFile, concat(path, ": PixelData"),
+                   "is damaged, truncated or deflated; export the series again");
 }
 
 void checkDicomPixels(const Path& path, const DicomHeader& h) {
-  const auto refuse = [&](const char* what) { throw inputError(path, what); };
+  const auto refuse = [&](const char* field, const char* what) {
+    throw fieldError(path, field, what);
+  };
   if (h.rows == 0 || h.columns == 0)
-    refuse("Rows or Columns: is missing; export the series again");
+    refuse("Rows or Columns", "is missing; export the series again");
   const bool isSupported = h.bits == 8 || h.bits == 16 || h.bits == 32;
   if (!isSupported || h.bitsStored == 0 || h.highBit >= h.bits || h.bitsStored > h.highBit + 1 ||
       h.isSigned > 1)
-    refuse("BitsAllocated, BitsStored or HighBit: has an unsupported value; save the volume in "
-           "Slicer as .nrrd and use that");
+    refuse("BitsAllocated, BitsStored or HighBit", "has an unsupported value; save the volume in "
+                                                   "Slicer as .nrrd and use that");
   if (!std::isfinite(h.slope) || !std::isfinite(h.intercept))
-    refuse("RescaleSlope or RescaleIntercept: is not one finite number; export the series again");
+    refuse("RescaleSlope or RescaleIntercept", "is not one finite number; export the series again");
   // Lossless codecs compress an empty image to almost nothing, and other images at most 1000 to 1.
   constexpr std::uint64_t ratio = 1000, emptyImageBytes = 1 << 24;
   const std::uint64_t stored = std::filesystem::file_size(path);
   const std::uint64_t maxBytes =
       h.isCompressed ? std::max(emptyImageBytes, stored * ratio) : stored;
   if (imageBytes(h) > maxBytes)
-    refuse(
-        "PixelData: is shorter than Rows, Columns and BitsAllocated say; export the series again");
+    refuse("PixelData",
+           "is shorter than Rows, Columns and BitsAllocated say; export the series again");
 }
 
 std::vector<double> rescaleVoxels(const DicomHeader& h, const std::string& voxels) {

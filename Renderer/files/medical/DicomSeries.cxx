@@ -30,8 +30,8 @@ std::pair<Paths, Paths> listFolder(const Path& folder) {
       folders.push_back(it->path());
   }
   if (failed)
-    throw inputError(folder, "folder cannot be read: ", failed.message(), "; ",
-                     readHint(failed.value(), "check its name and its permissions"));
+    throw inputError(ErrorCode::unreadableFile, folder, "folder cannot be read: ", failed.message(),
+                     "; ", readHint(failed.value(), "check its name and its permissions"));
   std::ranges::sort(files);
   std::ranges::sort(folders);
   return {files, folders};
@@ -75,7 +75,7 @@ std::vector<DicomSeries> findDicomSeries(const Path& folder) {
     series.files.push_back(file);
   }
   if (byUid.empty())
-    throw inputError(folder,
+    throw inputError(ErrorCode::unsupportedFile, folder,
                      "folder has no DICOM image series; give one that does, or a volume file");
   std::vector<DicomSeries> all;
   for (auto& [uid, series] : byUid)
@@ -91,8 +91,8 @@ DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
   if (!selector && series.size() == 1)
     return series.front();
   if (!selector)
-    throw inputError(folder, "has ", series.size(), " DICOM series: ", formatSeries(series),
-                     "; choose one with --volume, by uid, number or description");
+    throw inputError(ErrorCode::ambiguousVolume, folder, "has ", series.size(),
+                     " DICOM series: ", formatSeries(series));
   for (const auto field : {&DicomSeries::uid, &DicomSeries::number, &DicomSeries::description}) {
     std::vector<DicomSeries> found;
     std::ranges::copy_if(series, std::back_inserter(found),
@@ -100,10 +100,10 @@ DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
     if (found.size() == 1)
       return found.front();
     if (found.size() > 1)
-      throw inputError(folder, "--volume \"", sanitize(*selector),
+      throw inputError(ErrorCode::ambiguousName, folder, "\"", sanitize(*selector),
                        "\" matches several: ", formatSeries(found), "; choose one by its uid");
   }
-  throw inputError(folder, "--volume \"", sanitize(*selector),
+  throw inputError(ErrorCode::unknownName, folder, "\"", sanitize(*selector),
                    "\" matches no DICOM series; it has ", formatSeries(series));
 }
 

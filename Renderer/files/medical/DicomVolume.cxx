@@ -28,28 +28,33 @@ std::string formatMm(double length) {
 
 Slice openSlice(DicomReader& files, const Path& path) {
   const auto header = files.readHeader(path);
-  const auto refuse = [&](const char* what) { throw inputError(path, what); };
+  const auto refuse = [&](const char* field, const char* what) {
+    throw fieldError(path, field, what);
+  };
   if (!header)
-    refuse("is not a DICOM file; give a volume file or a DICOM series");
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "is not a DICOM file; give a volume file or a DICOM series");
   const DicomHeader& h = *header;
   if (!h.isComplete)
-    refuse("is damaged, truncated or deflated; export the series again");
+    throw inputError(ErrorCode::damagedFile, path,
+                     "is damaged, truncated or deflated; export the series again");
   if (!isImage(h))
-    refuse("PixelData: is missing; give a series of images");
+    refuse("PixelData", "is missing; give a series of images");
   if (h.frames != 1)
-    refuse("NumberOfFrames: multi-frame files are not supported; save the volume in Slicer as "
-           ".nrrd and use that");
+    refuse("NumberOfFrames", "multi-frame files are not supported; save the volume in Slicer as "
+                             ".nrrd and use that");
   if (h.samples != 1 || h.photometric != "MONOCHROME2")
-    refuse("PhotometricInterpretation: is not MONOCHROME2 with one sample per voxel; give a series "
+    refuse("PhotometricInterpretation",
+           "is not MONOCHROME2 with one sample per voxel; give a series "
            "of gray images");
   if (h.position.size() != 3 || h.orientation.size() != 6)
-    refuse("ImagePositionPatient or ImageOrientationPatient: is missing, so the slice cannot be "
-           "placed; give another series");
+    refuse("ImagePositionPatient or ImageOrientationPatient", "is missing, so the slice cannot be "
+                                                              "placed; give another series");
   if (h.pixelSpacing.size() != 2)
-    refuse("PixelSpacing: is missing; give another series");
+    refuse("PixelSpacing", "is missing; give another series");
   for (const double spacing : h.pixelSpacing)
     if (!(spacing > 1.0 / maxLength && spacing < maxLength))
-      refuse("PixelSpacing: must be above 0 mm; export the series again");
+      refuse("PixelSpacing", "must be above 0 mm; export the series again");
   checkDicomPixels(path, h);
   return {path, h, {h.position[0], h.position[1], h.position[2]}};
 }
@@ -68,9 +73,8 @@ Axes readAxes(const Slice& slice) {
   constexpr double tolerance = 1e-2; // real files round their direction cosines
   if (std::abs(row.norm() - 1.0) > tolerance || std::abs(column.norm() - 1.0) > tolerance ||
       std::abs(row.dot(column)) > tolerance)
-    throw inputError(
-        slice.path,
-        "ImageOrientationPatient: must be two orthogonal directions; export the series again");
+    throw fieldError(slice.path, "ImageOrientationPatient",
+                     "must be two orthogonal directions; export the series again");
   return {row.normalized(), column.normalized()};
 }
 
@@ -81,7 +85,7 @@ void checkConsistent(const std::vector<Slice>& slices) {
   };
   for (const Slice& slice : slices) {
     const auto refuse = [&](const char* field) {
-      throw inputError(slice.path, field, ": differs from that of ", first.path.filename(),
+      throw fieldError(slice.path, field, "differs from that of ", first.path.filename(),
                        "; give a series of parallel slices of equal size");
     };
     const DicomHeader& h = slice.header;
@@ -110,10 +114,10 @@ void checkGaps(const std::vector<Slice>& slices) {
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const std::string nextName = slices[i + 1].path.filename().string();
     if (gaps[i] < minGap)
-      throw inputError(slices[i].path, "ImagePositionPatient: equals that of ", nextName,
+      throw fieldError(slices[i].path, "ImagePositionPatient", "equals that of ", nextName,
                        "; give a series with one slice per position (no multiple times or echoes)");
     if (std::abs(gaps[i] - medianGap) > 0.5 * medianGap)
-      throw inputError(slices[i].path, "ImagePositionPatient: is ", formatMm(gaps[i]), " from ",
+      throw fieldError(slices[i].path, "ImagePositionPatient", "is ", formatMm(gaps[i]), " from ",
                        nextName, ", but the median gap is ", formatMm(medianGap),
                        "; add the missing slices");
   }
@@ -121,7 +125,7 @@ void checkGaps(const std::vector<Slice>& slices) {
 
 /// Step from one slice to the next, LPS mm. Warns about uneven slices of the volume `name`.
 Vec3 computeStep(const std::vector<Slice>& slices, const Axes& axes, const std::string& name,
-                 std::vector<std::string>& warnings) {
+                 std::vector<Message>& warnings) {
   if (slices.size() == 1)
     return axes.normal();
   checkGaps(slices);
@@ -135,13 +139,14 @@ Vec3 computeStep(const std::vector<Slice>& slices, const Axes& axes, const std::
     if (normalOffset > 0.5 * step.dot(axes.normal()) ||
         std::abs(offset.dot(axes.row)) > 0.5 * pixel[1] ||
         std::abs(offset.dot(axes.column)) > 0.5 * pixel[0])
-      throw inputError(slices[i].path, "ImagePositionPatient: is ", formatMm(offset.norm()),
+      throw fieldError(slices[i].path, "ImagePositionPatient", "is ", formatMm(offset.norm()),
                        " off even spacing; resample the series in Slicer and use the volume file");
     maxOffset = std::max(maxOffset, offset.norm());
   }
   if (maxOffset > 0.02 * step.norm())
-    warnings.push_back(concat(name, ": slices are up to ", formatMm(maxOffset),
-                              " off even spacing; ", formatMm(step.norm()), " steps are used"));
+    warnings.push_back(makeMessage(ErrorCode::assumedGeometry, name, "slices are up to ",
+                                   formatMm(maxOffset), " off even spacing; ",
+                                   formatMm(step.norm()), " steps are used"));
   return step;
 }
 
@@ -149,9 +154,8 @@ Grid makeGrid(const std::vector<Slice>& slices, const Axes& axes, const Vec3& st
   const DicomHeader& h = slices.front().header;
   for (const Slice& slice : slices)
     if (!(slice.position.array().abs() < maxLength).all())
-      throw inputError(
-          slice.path,
-          "ImagePositionPatient: must be within 1e9 mm of the origin; export the series again");
+      throw fieldError(slice.path, "ImagePositionPatient",
+                       "must be within 1e9 mm of the origin; export the series again");
   const Mat3 steps(axes.row * h.pixelSpacing[1], axes.column * h.pixelSpacing[0], step);
   return {Size3(h.columns, h.rows, static_cast<std::int64_t>(slices.size())),
           Affine(lpsToRas * steps, lpsToRas * slices.front().position)};
@@ -182,13 +186,14 @@ Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
   for (const Path& path : paths)
     slices.push_back(openSlice(files, path));
   if (slices.empty())
-    throw inputError(name, "names no DICOM file; give the files of the series");
+    throw inputError(ErrorCode::missingFile, name,
+                     "names no DICOM file; give the files of the series");
   checkConsistent(slices);
   const Axes axes = readAxes(slices.front());
   for (Slice& slice : slices)
     slice.depth = slice.position.dot(axes.normal());
   std::ranges::stable_sort(slices, {}, &Slice::depth);
-  std::vector<std::string> warnings;
+  std::vector<Message> warnings;
   const Grid grid = makeGrid(slices, axes, computeStep(slices, axes, name, warnings));
   Volume volume = makeVolume(name, grid, readAll(files, slices));
   std::ranges::move(warnings, std::back_inserter(volume.warnings));
@@ -203,7 +208,7 @@ Volume readDicomVolume(const std::vector<Path>& files, const std::string& name) 
   try {
     return readSlices(files, name);
   } catch (const std::bad_alloc&) {
-    throw inputError(name, "does not fit into memory; crop or resample it");
+    throw inputError(ErrorCode::outOfMemory, name, "does not fit into memory; crop or resample it");
   }
 }
 

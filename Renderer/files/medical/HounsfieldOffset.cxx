@@ -63,10 +63,11 @@ std::optional<Voxels> toHounsfield(const LargeArray<Voxel>& voxels, Volume& volu
   const double tissue = computeTissueMedian(voxels);
   const bool isHounsfieldShifted = tissue >= minTissue && tissue <= maxTissue;
   volume.warnings.push_back(
-      volume.name + (isHounsfieldShifted ? ": air is stored at 0, so 1024 is subtracted to get "
-                                           "Hounsfield units; --shift -1024 reverts this"
-                                         : ": air is at 0, so values may not be Hounsfield units; "
-                                           "--shift 1024 adapts a CT transfer function"));
+      isHounsfieldShifted
+          ? makeMessage(ErrorCode::removedHounsfieldOffset, volume.name,
+                        "air is stored at 0, so 1024 is subtracted to get Hounsfield units")
+          : makeMessage(ErrorCode::possibleHounsfieldOffset, volume.name,
+                        "air is at 0, so values may not be Hounsfield units"));
   return isHounsfieldShifted ? std::optional(subtractOffset(voxels, volume.maximum)) : std::nullopt;
 }
 

@@ -21,11 +21,11 @@ namespace {
 void addFile(const std::filesystem::path& path, std::string_view name, StoredSamples& stored) {
   const std::filesystem::path file = path.parent_path() / std::filesystem::path(name);
   if (name == "-") // libraries would read standard input
-    throw inputError(path, "data file: \"-\" is not a file; give one beside the header");
+    throw fieldError(path, "data file", "\"-\" is not a file; give one beside the header");
   try {
     requireFile(file, "give a file of samples");
   } catch (const Error& error) {
-    throw inputError(path, "data file: ", error.what());
+    throw fieldError(path, "data file", error.what());
   }
   stored.files.push_back(file);
   stored.bytes += std::filesystem::file_size(file);
@@ -33,7 +33,8 @@ void addFile(const std::filesystem::path& path, std::string_view name, StoredSam
 
 void setOffset(const std::filesystem::path& path, std::uint64_t offset, StoredSamples& stored) {
   if (offset > stored.bytes)
-    throw inputError(path, "is truncated: it ends before the first sample; copy it again");
+    throw inputError(ErrorCode::damagedFile, path,
+                     "is truncated: it ends before the first sample; copy it again");
   stored.offset = offset;
   stored.bytes -= offset;
 }
@@ -51,8 +52,8 @@ void locateNrrdFiles(const std::filesystem::path& path, const NrrdHeaderText& he
     for (const std::string& file : header.files)
       addFile(path, file, stored);
   } else if (name.find('%') != std::string::npos)
-    throw inputError(
-        path, "data file: numbered file series are not supported; write the volume to one file");
+    throw fieldError(path, "data file",
+                     "numbered file series are not supported; write the volume to one file");
   else
     addFile(path, name, stored);
 }
@@ -69,15 +70,16 @@ bool isGzip(const std::string& encoding) {
 void checkNrrdSupport(const std::filesystem::path& path, Fields& fields) {
   const std::string encoding = toLower(fields["encoding"]);
   if (!isGzip(encoding) && !isOneOf(encoding, {"raw", "hex", "ascii", "text", "txt"}))
-    throw inputError(path, "encoding: \"", sanitize(encoding),
+    throw fieldError(path, "encoding", "\"", sanitize(encoding),
                      "\" is not supported; use raw or gzip");
   if (const auto axes = parseInteger(fields["dimension"]); axes && *axes < 3)
-    throw inputError(path, "is an image of ", *axes, " axes, not a volume; give one with three");
+    throw inputError(ErrorCode::unsupportedFile, path, "is an image of ", *axes,
+                     " axes, not a volume; give one with three");
   constexpr std::int64_t maxSkipped = 1 << 20; // teem inflates skipped bytes one at a time
   if (isGzip(encoding) && fields.contains("byteskip")) {
     const auto skipped = parseInteger(fields["byteskip"]);
     if (!skipped || *skipped < 0 || *skipped > maxSkipped)
-      throw inputError(path, "byte skip: must be from 0 to ", maxSkipped,
+      throw fieldError(path, "byte skip", "must be from 0 to ", maxSkipped,
                        " in compressed data; write the samples without it");
   }
 }
@@ -118,12 +120,12 @@ void checkMetaField(const std::filesystem::path& path, const std::string& key,
   const bool isMatrix = isOneOf(key, {"TransformMatrix", "Rotation", "Orientation"});
   const std::size_t maxLength = isMatrix || isVector ? 1000 : 250;
   if (key.size() > 200 || value.size() > maxLength)
-    throw inputError(path, key.substr(0, 40), ": has more than ", maxLength,
+    throw fieldError(path, key.substr(0, 40), "has more than ", maxLength,
                      " characters; shorten it");
   const auto numbers = static_cast<std::int64_t>(splitWords(value).size());
   const std::int64_t needed = isVector ? dimension : isMatrix ? dimension * dimension : 0;
   if (numbers < needed)
-    throw inputError(path, key, ": has ", numbers, " numbers; it needs ", needed);
+    throw fieldError(path, key, "has ", numbers, " numbers; it needs ", needed);
 }
 
 /// Rejects values that MetaIO misreads, or reads but does not apply.
@@ -131,7 +133,7 @@ void checkMetaValue(const std::filesystem::path& path, const std::string& key,
                     const std::string& value) {
   const auto refuseUnless = [&](double neutral) {
     if (parseNumbers(value) != std::vector<double>{neutral})
-      throw inputError(path, key, ": only ", static_cast<int>(neutral),
+      throw fieldError(path, key, "only ", static_cast<int>(neutral),
                        " is supported; rescale the samples and write them again");
   };
   if (key == "ElementToIntensityFunctionSlope")
@@ -143,7 +145,7 @@ void checkMetaValue(const std::filesystem::path& path, const std::string& key,
   else if (key == "DimSize")
     for (const std::string& word : splitWords(value))
       if (const auto size = parseInteger(word); !size || *size < 1 || *size > INT32_MAX)
-        throw inputError(path, "DimSize: each must be an integer from 1 to 2147483647");
+        throw fieldError(path, "DimSize", "each must be an integer from 1 to 2147483647");
 }
 
 Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
@@ -162,7 +164,7 @@ Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
     if (key == "NDims") {
       dimension = parseInteger(fields[key]).value_or(0);
       if (dimension < 1 || dimension > 10)
-        throw inputError(path, "NDims: must be an integer from 1 to 10");
+        throw fieldError(path, "NDims", "must be an integer from 1 to 10");
     }
     checkMetaField(path, key, fields[key], dimension);
     checkMetaValue(path, key, fields[key]);
@@ -180,11 +182,11 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
     return value.starts_with('t') || value.starts_with('1') || value.starts_with('y');
   };
   if (fields.contains("BinaryData") && !isTrue("BinaryData"))
-    throw inputError(path, "BinaryData: text samples are not supported; write them as binary");
+    throw fieldError(path, "BinaryData", "text samples are not supported; write them as binary");
   const std::string& name = fields["ElementDataFile"];
   if (name.starts_with("LIST") || name.find('%') != std::string::npos)
-    throw inputError(
-        path, "ElementDataFile: file series are not supported; write the volume to one file");
+    throw fieldError(path, "ElementDataFile",
+                     "file series are not supported; write the volume to one file");
   const bool isLocal = toLower(name) == "local";
   StoredSamples stored;
   stored.hasSpacing = fields.contains("ElementSpacing") || fields.contains("ElementSize");
@@ -243,7 +245,7 @@ std::uint64_t checkDeclaredBytes(const std::filesystem::path& path, const Stored
     declared = UINT64_MAX;
   constexpr std::uint64_t maxRatio = 1100; // deflate reaches 1032
   if (declared / (stored.isCompressed ? maxRatio : 1) > stored.bytes)
-    throw inputError(path, "is truncated: its header declares ", declared,
+    throw inputError(ErrorCode::damagedFile, path, "is truncated: its header declares ", declared,
                      " bytes of samples, the file has ", stored.bytes,
                      (stored.isCompressed ? " compressed" : ""), "; copy or write it again");
   return declared;

@@ -31,8 +31,8 @@ void checkPixels(const std::filesystem::path& path, const itk::ImageIOBase& io,
   const bool isScalar = io.GetNumberOfComponents() == 1 && type != Pixel::COMPLEX;
   const bool isList = allowed == Components::any && type == Pixel::VECTOR;
   if (!isScalar && !isList)
-    throw inputError(path, "has ", io.GetNumberOfComponents(), " components per voxel (",
-                     itk::ImageIOBase::GetPixelTypeAsString(type),
+    throw inputError(ErrorCode::unsupportedFile, path, "has ", io.GetNumberOfComponents(),
+                     " components per voxel (", itk::ImageIOBase::GetPixelTypeAsString(type),
                      "); convert it to one scalar per voxel");
 }
 
@@ -44,17 +44,18 @@ std::size_t countFrames(const itk::ImageIOBase& io) {
 Size3 readSize(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
   const unsigned axes = io.GetNumberOfDimensions();
   if (axes < 3)
-    throw inputError(path, "is an image of ", axes, " axes, not a volume; give one with three");
+    throw inputError(ErrorCode::unsupportedFile, path, "is an image of ", axes,
+                     " axes, not a volume; give one with three");
   const bool allowsFrames = allowed == Components::any && io.GetNumberOfComponents() == 1;
   for (unsigned axis = allowsFrames ? 4 : 3; axis < axes; ++axis)
     if (io.GetDimensions(axis) != 1)
-      throw inputError(path, "has ", axes, " axes, the ", axis + 1, "th with ",
-                       io.GetDimensions(axis), " frames; extract one of them");
+      throw inputError(ErrorCode::unsupportedFile, path, "has ", axes, " axes, the ", axis + 1,
+                       "th with ", io.GetDimensions(axis), " frames; extract one of them");
   Size3 size;
   for (unsigned axis = 0; axis < 3; ++axis) {
     size[axis] = static_cast<std::int64_t>(io.GetDimensions(axis));
     if (size[axis] < 1)
-      throw inputError(path, "sizes: axis ", axis + 1, " has no voxels; write it again");
+      throw fieldError(path, "sizes", "axis ", axis + 1, " has no voxels; write it again");
   }
   return size;
 }
@@ -63,13 +64,14 @@ void checkGeometry(const std::filesystem::path& path, const Mat3& directions, co
                    const Vec3& origin) {
   constexpr double maxLength = 1e9; // mm; beyond it, coordinates lose fractions of a voxel
   if (!((spacing.array() > 1.0 / maxLength).all() && (spacing.array() < maxLength).all()))
-    throw inputError(path, "spacing: must be from 1e-9 to 1e9 mm along every axis; fix the header");
+    throw fieldError(path, "spacing",
+                     "must be from 1e-9 to 1e9 mm along every axis; fix the header");
   if (!(origin.array().abs() < maxLength).all())
-    throw inputError(path, "origin: must be within 1e9 mm; fix the header");
+    throw fieldError(path, "origin", "must be within 1e9 mm; fix the header");
   // The determinant of the unit directions: 1 for orthogonal axes, 0 for coplanar ones.
   constexpr double minDeterminant = 1e-6;
   if (!(std::abs(directions.normalizedColumns().determinant()) > minDeterminant))
-    throw inputError(path, "directions: the axes are linearly dependent; fix the header");
+    throw fieldError(path, "directions", "the axes are linearly dependent; fix the header");
 }
 
 Grid readGrid(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
@@ -106,7 +108,8 @@ SampleType findSampleType(const std::filesystem::path& path, const itk::ImageIOB
       {Type::FLOAT, float()},           {Type::DOUBLE, double()}};
   const auto type = types.find(io.GetComponentType());
   if (type == types.end())
-    throw inputError(path, "has an unsupported sample type; convert it to 16-bit integers");
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "has an unsupported sample type; convert it to 16-bit integers");
   return type->second;
 }
 
@@ -158,7 +161,8 @@ void readNifti(const std::filesystem::path& path, const SampleConsumer& consume)
   const NiftiHeader header = readNiftiHeader(path);
   const std::size_t axes = header.size.size();
   if (axes < 3)
-    throw inputError(path, "is an image of ", axes, " axes, not a volume; give one with three");
+    throw inputError(ErrorCode::unsupportedFile, path, "is an image of ", axes,
+                     " axes, not a volume; give one with three");
   for (std::size_t axis = 3; axis < axes; ++axis)
     if (header.size[axis] != 1) { // the fifth axis holds vector components (nifti1.h)
       const char* const problem = axis == 4 ? " components per voxel; convert it to one scalar"
@@ -192,7 +196,8 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
                      .hasFrames = countFrames(*io) > 1,
                      .fields = readTextFields(*io)};
   if (!stored.hasSpacing)
-    image.warnings.push_back(path.string() + ": has no spacing; 1 mm voxels are assumed");
+    image.warnings.push_back(
+        makeMessage(ErrorCode::assumedGeometry, path, "has no spacing; 1 mm voxels are assumed"));
   if (image.hasFrames)
     image.components = countFrames(*io);
   consume(image, makeSampleSource(path, stored, *io));
@@ -205,18 +210,20 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
   requireFile(path, "give a volume file in it");
   const auto format = findMedicalFormat(path);
   if (lowercaseExtension(path) == ".vtm")
-    throw inputError(path, "is a segmentation; give its volume, and this file as --segmentation");
+    throw inputError(ErrorCode::segmentationAsVolume, path, "is a segmentation");
   if (!format)
     throw inputError(
-        path, "has an unknown extension; give a .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd file");
+        ErrorCode::unsupportedFile, path,
+        "has an unknown extension; give a .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd file");
   try {
     readChecked(path, *format, allowed, consume);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {
-    throw inputError(path, "does not fit into memory; crop or resample it");
+    throw inputError(ErrorCode::outOfMemory, path, "does not fit into memory; crop or resample it");
   } catch (const std::exception&) { // ITK's text has many lines and names its own sources
-    throw inputError(path, "is damaged, truncated or does not match its extension; write it again");
+    throw inputError(ErrorCode::damagedFile, path,
+                     "is damaged, truncated or does not match its extension; write it again");
   }
 }
 

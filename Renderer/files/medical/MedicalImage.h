@@ -3,6 +3,7 @@
 // single compressed streams are read by our own code, in one pass. Callers normally use
 // VolumeReader.h or SegmentationReader.h.
 
+#include "base/Error.h"
 #include "files/medical/SampleSource.h"
 #include "model/volume/Grid.h"
 
@@ -19,7 +20,7 @@ struct MedicalImage {
   bool hasFrames = false; ///< components are stored frame by frame; else per voxel; x is fastest
   std::map<std::string, std::string> fields = {}; ///< key:=value pairs of a NRRD
   std::string extensions = {};                    ///< bytes of the NIfTI header extensions
-  std::vector<std::string> warnings = {};         ///< each names the file
+  std::vector<Message> warnings = {};
 };
 
 enum class Components { one, any };

@@ -69,7 +69,7 @@ SampleType readNiftiType(const NiftiFields& fields) {
   const auto code = fields.number<std::int16_t>(70);
   const auto type = types.find(code);
   if (type == types.end())
-    throw inputError(fields.path(), "datatype: ", code,
+    throw fieldError(fields.path(), "datatype", code,
                      " is not a real scalar type; convert it to 16-bit integers");
   return type->second;
 }
@@ -80,7 +80,7 @@ std::optional<Rescaling> readNiftiRescaling(const NiftiFields& fields) {
   if (std::isnan(slope) || slope == 0.0)
     return std::nullopt;
   if (!std::isfinite(slope) || !std::isfinite(intercept))
-    throw inputError(fields.path(), "scl_slope or scl_inter: is not finite; write them again");
+    throw fieldError(fields.path(), "scl_slope or scl_inter", "is not finite; write them again");
   if (slope == 1.0 && intercept == 0.0)
     return std::nullopt;
   return Rescaling{slope, intercept};
@@ -104,13 +104,13 @@ Affine readSform(const NiftiFields& fields, const Vec3& pixdim) {
   const Mat3 axes = linear.normalizedColumns();
   constexpr double minDeterminant = 1e-6, maxDeviation = 1e-3;
   if (!(std::abs(axes.determinant()) > minDeterminant))
-    throw inputError(fields.path(), "srow: the axes are linearly dependent; fix the header");
+    throw fieldError(fields.path(), "srow", "the axes are linearly dependent; fix the header");
   const Mat3 nearest = findNearestOrthogonal(axes);
   double deviation = 0.0;
   for (int column = 0; column < 3; ++column)
     deviation = std::max(deviation, (axes.col(column) - nearest.col(column)).norm());
   if (!(deviation < maxDeviation))
-    throw inputError(fields.path(), "srow: is sheared by ", toString(deviation, 2),
+    throw fieldError(fields.path(), "srow", "is sheared by ", toString(deviation, 2),
                      " of an axis; resample the image onto orthogonal axes");
   // If pixdim agrees, it states the spacing without the rounding of the rows.
   Vec3 spacing = linear.columnNorms();
@@ -145,14 +145,15 @@ double readUnitMm(const NiftiFields& fields) {
   return code == 1 ? 1000.0 : code == 3 ? 0.001 : 1.0;
 }
 
-Affine readNiftiGeometry(const NiftiFields& fields, std::vector<std::string>& warnings) {
+Affine readNiftiGeometry(const NiftiFields& fields, std::vector<Message>& warnings) {
   const auto qform = fields.number<std::int16_t>(252), sform = fields.number<std::int16_t>(254);
   const bool usesSform = sform > 0 && (sform == 1 || qform <= 0);
   // pixdim, quaternion and offset, rows of the sform
   if (!fields.hasFiniteNumbers(76, 4) || (qform > 0 && !fields.hasFiniteNumbers(256, 6)) ||
       (sform > 0 && !fields.hasFiniteNumbers(280, 12)))
-    throw inputError(fields.path(), "qform, sform or pixdim: has a number that is not finite or "
-                                    "exceeds 1e9 mm; write it again");
+    throw fieldError(fields.path(), "qform, sform or pixdim",
+                     "has a number that is not finite or "
+                     "exceeds 1e9 mm; write it again");
   Vec3 pixdim = fields.triple(80);
   for (int axis = 0; axis < 3; ++axis)
     pixdim[axis] = pixdim[axis] == 0.0 ? 1.0 : std::abs(pixdim[axis]);
@@ -162,8 +163,9 @@ Affine readNiftiGeometry(const NiftiFields& fields, std::vector<std::string>& wa
   else if (qform > 0)
     map = readQform(fields, pixdim);
   else
-    warnings.push_back(fields.path().string() +
-                       ": has no qform or sform; voxels are placed along LPS axes from the origin");
+    warnings.push_back(
+        makeMessage(ErrorCode::assumedGeometry, fields.path(),
+                    "has no qform or sform; voxels are placed along LPS axes from the origin"));
   const double unit = readUnitMm(fields);
   return Affine(map.linear() * Mat3::Diagonal(Vec3::Constant(unit)), unit * map.translation());
 }
@@ -181,7 +183,8 @@ NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::pat
                        std::ranges::all_of(header.size, [](std::int64_t n) { return n >= 1; });
   if (fields.number<std::int32_t>(0) != static_cast<std::int32_t>(bytes.size()) || !isSized ||
       !fields.isOnePart() || !(offset <= maxOffset))
-    throw inputError(path, "is not a single-file NIfTI-1 image; write it again as .nii.gz");
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "is not a single-file NIfTI-1 image; write it again as .nii.gz");
   header.type = readNiftiType(fields);
   header.rescaling = readNiftiRescaling(fields);
   // Samples follow the header and the four bytes that flag extensions.

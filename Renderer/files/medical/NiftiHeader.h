@@ -2,6 +2,7 @@
 // Header of a single-file NIfTI-1 image (nifti1.h). Parsed by our own code, since ITK rejects an
 // sform whose axes deviate from right angles by mere rounding.
 
+#include "base/Error.h"
 #include "files/medical/SampleSource.h"
 #include "model/volume/Grid.h"
 
@@ -23,7 +24,7 @@ struct NiftiHeader {
   std::int64_t offset = 352; ///< byte offset of the first sample
   std::optional<Rescaling> rescaling = {};
   Affine indexToRas = Affine::Identity(); ///< RAS mm
-  std::vector<std::string> warnings = {}; ///< each names the file
+  std::vector<Message> warnings = {};
 };
 
 /// Parses a header. The sform gives the geometry if its code is 1 (scanner) or there is no qform;

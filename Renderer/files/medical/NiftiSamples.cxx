@@ -13,7 +13,8 @@ namespace fenestra {
 namespace {
 
 Error makeDamagedError(const std::filesystem::path& path) {
-  return inputError(path, "is damaged or truncated; copy or write it again");
+  return inputError(ErrorCode::damagedFile, path,
+                    "is damaged or truncated; copy or write it again");
 }
 
 /// Reads plain and gzip-compressed files.
@@ -22,7 +23,7 @@ public:
   explicit NiftiStream(const std::filesystem::path& path)
       : m_path(path), m_file(gzopen(path.c_str(), "rb"), gzclose) {
     if (!m_file)
-      throw inputError(path, "cannot be read; check its permissions");
+      throw inputError(ErrorCode::unreadableFile, path, "cannot be read; check its permissions");
     gzbuffer(m_file.get(), 1 << 18);
   }
 

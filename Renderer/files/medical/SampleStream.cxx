@@ -51,7 +51,8 @@ private:
   }
 
   Error makeDamagedError() const {
-    return inputError(m_path, "is damaged or truncated: its compressed samples do not inflate to ",
+    return inputError(ErrorCode::damagedFile, m_path,
+                      "is damaged or truncated: its compressed samples do not inflate to ",
                       m_declared, " bytes as its header declares; copy or write it again");
   }
 
@@ -78,7 +79,8 @@ void openStream(const std::filesystem::path& path, const StoredSamples& stored,
   const auto samples = std::make_shared<std::ifstream>(std::move(file));
   source.read = [path, samples](void* to, std::size_t bytes) {
     if (!samples->read(static_cast<char*>(to), static_cast<std::streamsize>(bytes)))
-      throw inputError(path, "cannot be read to the end of its samples; copy it again");
+      throw inputError(ErrorCode::unreadableFile, path,
+                       "cannot be read to the end of its samples; copy it again");
   };
 }
 

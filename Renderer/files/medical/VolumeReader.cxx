@@ -8,12 +8,12 @@ namespace fenestra {
 Volume makeVolume(const std::string& name, const Grid& grid, VoxelStore&& samples) {
   const SampleStats& s = samples.stats();
   if (s.minimum > s.maximum)
-    throw inputError(name, "has no finite voxel; write it again");
+    throw inputError(ErrorCode::nonFiniteVoxels, name, "has no finite voxel; write it again");
   Volume volume;
   const auto warn = [&](std::size_t count, const char* what, const char* replacement) {
     if (count > 0)
-      volume.warnings.push_back(
-          concat(name, ": ", count, " voxels are ", what, "; they are set to ", replacement));
+      volume.warnings.push_back(makeMessage(ErrorCode::nonFiniteVoxels, name, count, " voxels are ",
+                                            what, "; they are set to ", replacement));
   };
   warn(s.nanCount, "not a number", "the minimum of the finite values");
   warn(s.infiniteCount, "infinite", "the minimum or maximum of the finite values");

@@ -26,13 +26,14 @@ std::vector<Path> readBlocks(const Path& path) {
   const bool read = static_cast<bool>(document.load_buffer(text.data(), text.size()));
   const pugi::xml_node file = document.child("VTKFile");
   if (!read || std::string_view(file.attribute("type").value()) != "vtkMultiBlockDataSet")
-    throw inputError(path, "is damaged or not a multi-block file; ", exportHint);
+    throw inputError(ErrorCode::damagedFile, path, "is damaged or not a multi-block file; ",
+                     exportHint);
   constexpr std::size_t maxBlocks = 4096;
   std::vector<Path> blocks;
   for (const auto& block : file.child("vtkMultiBlockDataSet").children("DataSet")) {
     const Path name = Path(block.attribute("file").value()).lexically_normal();
     if (name.empty() || name.is_absolute() || *name.begin() == ".." || blocks.size() == maxBlocks)
-      throw inputError(path, "DataSet: file=\"", sanitize(name.string()),
+      throw fieldError(path, "DataSet", "file=\"", sanitize(name.string()),
                        "\" is not in the folder of the .vtm; ", exportHint);
     blocks.push_back(path.parent_path() / name);
   }
@@ -72,9 +73,8 @@ std::vector<Surface> readSurfaces(const Path& path) {
   for (const Path& block : readBlocks(path)) {
     VtkSurface shape = readVtkSurface(block, fieldData, budget);
     if (shape.triangles.empty() && shape.hasLines)
-      throw inputError(
-          block, "Segmentation_MasterRepresentation: is planar contours, not a closed surface; ",
-          exportHint);
+      throw fieldError(block, "Segmentation_MasterRepresentation",
+                       "is planar contours, not a closed surface; ", exportHint);
     surfaces.push_back({makeSegmentInfo(shape, surfaces.size()), std::move(shape)});
   }
   return surfaces;
@@ -128,7 +128,8 @@ public:
       constexpr std::int64_t maxLabels = std::int64_t{1} << 31;
       const std::int64_t size = m_size.prod() * static_cast<std::int64_t>(++count);
       if (size > maxLabels)
-        throw inputError(m_path, "has segments that overlap in too many layers; ", exportHint);
+        throw inputError(ErrorCode::limitExceeded, m_path,
+                         "has segments that overlap in too many layers; ", exportHint);
       labels.resize(static_cast<std::size_t>(size));
     }
     for (const VoxelRun& run : runs)

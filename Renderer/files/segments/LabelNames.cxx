@@ -25,17 +25,17 @@ public:
            std::optional<Rgb> color = {}) {
     if (!value || *value < std::numeric_limits<std::int32_t>::min() ||
         *value > std::numeric_limits<std::int32_t>::max())
-      throw inputError(m_source, place, ": must begin with a 32-bit integer");
+      throw fieldError(m_source, place, "must begin with a 32-bit integer");
     if (*value == 0)
       return;
     if (name.empty())
-      throw inputError(m_source, place, ": has no name; name the value, or remove it");
+      throw fieldError(m_source, place, "has no name; name the value, or remove it");
     const auto key = static_cast<std::int32_t>(*value);
     if (color && !((*color >= 0.0).all() && (*color <= 1.0).all()))
       color.reset();
     const auto [entry, isNew] = m_names.insert({key, {std::move(name), color}});
     if (!isNew)
-      throw inputError(m_source, place, ": names the value ", key, ", which already is \"",
+      throw fieldError(m_source, place, "names the value ", key, ", which already is \"",
                        sanitize(entry->second.name), "\"; remove one of them");
   }
 
@@ -119,8 +119,8 @@ void readCsv(const std::string& text, TableBuilder& table) {
       value = findColumn({"label", "value", "id", "index", "labelvalue"});
       name = findColumn({"name", "label_name", "labelname", "structure", "segment"});
       if (value >= fields.size() || name >= fields.size())
-        throw inputError(table.source(), place,
-                         ": has no columns \"label\" and \"name\"; rename the columns");
+        throw fieldError(table.source(), place,
+                         "has no columns \"label\" and \"name\"; rename the columns");
       continue;
     }
     const auto field = [&](std::size_t i) { return i < fields.size() ? fields[i] : std::string(); };
@@ -155,8 +155,9 @@ LabelNames readLabelNames(const std::filesystem::path& path) {
       {".json", [](const std::string& text, TableBuilder& table) { readJsonTable(text, table); }}};
   const auto reader = readers.find(lowercaseExtension(path));
   if (reader == readers.end())
-    throw inputError(path.string(), "has no extension of a label table; give a .ctbl, .txt, "
-                                    ".label, .json or .csv");
+    throw inputError(ErrorCode::unsupportedFile, path.string(),
+                     "has no extension of a label table; give a .ctbl, .txt, "
+                     ".label, .json or .csv");
   TableBuilder table(path.string());
   reader->second(readText(path), table);
   return table.take();
@@ -185,7 +186,8 @@ std::optional<LabelNames> parseLabelNamesXml(std::string_view xml, const std::st
   pugi::xml_document document;
   const std::size_t end = xml.rfind('>') + 1;
   if (!document.load_buffer(xml.data() + begin, end - begin))
-    throw inputError(source, "the label table in its header extension is damaged; write it again");
+    throw inputError(ErrorCode::damagedFile, source,
+                     "the label table in its header extension is damaged; write it again");
   TableBuilder table(source);
   for (const pugi::xpath_node& found : document.select_nodes("//LabelTable/Label")) {
     const pugi::xml_node label = found.node();

@@ -56,17 +56,17 @@ FoundNames readRequestedNames(const std::filesystem::path& path, const std::stri
     const auto inFile = parseLabelNamesXml(extensions, path.string());
     const std::string version = inFile ? findVersion(*inFile) : "";
     if (version.empty())
-      throw inputError(path, "does not state its TotalSegmentator version, and versions number "
-                             "organs differently; give --labels totalsegmentator1 or "
-                             "totalsegmentator2");
+      throw inputError(ErrorCode::unknownLabelVersion, path,
+                       "does not state its TotalSegmentator version, and versions number organs "
+                       "differently");
     return {*inFile, version};
   }
   if (auto table = findBuiltInLabelNames(requested))
     return {*table, requested};
   if (!fileExists(requested))
-    throw usageError("--labels ", sanitize(requested),
-                     ": is neither a file nor a built-in table; give a file, totalsegmentator, ",
-                     join(listBuiltInLabelTables(), ", "));
+    throw requestError(ErrorCode::unknownName, concat("labels ", sanitize(requested)),
+                       "is neither a file nor a built-in table; give a file, totalsegmentator, ",
+                       join(listBuiltInLabelTables(), ", "));
   const InputConfinement anywhere(std::nullopt); // the user named the file: not only in an archive
   return {readLabelNames(requested), requested};
 }
@@ -82,10 +82,12 @@ FoundNames readSiblingNames(const std::filesystem::path& path,
                            (!table.mustMatchExactly || names.size() == values.size());
       if (isMatch)
         return {std::move(names), file, std::move(found.warnings)};
-      found.warnings.push_back(concat(file, ": does not match the values of ", path.filename(),
-                                      " and is not used; --labels ", file, " forces its use"));
+      found.warnings.push_back(makeMessage(ErrorCode::unusedLabels, file,
+                                           "does not match the values of ", path.filename(),
+                                           " and is not used"));
     } catch (const Error& error) {
-      found.warnings.push_back(std::string(error.what()) + " (it is not used)");
+      found.warnings.push_back(error.message());
+      found.warnings.back().detail += " (it is not used)";
     }
   }
   return found;
@@ -110,10 +112,11 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
   constexpr std::size_t maxListed = 8;
   FoundNames found = readRequestedNames(path, extensions, *requested);
   if (!values.empty() && countNamed(found.names, values) == 0)
-    throw inputError(path, "--labels ", sanitize(*requested), " names none of the label values (",
+    throw inputError(ErrorCode::unmatchedLabels, path, "the label table ", sanitize(*requested),
+                     " names none of the label values (",
                      join(
                          values, ", ", [](std::int32_t value) { return concat(value); }, maxListed),
-                     "); give the table of this label map");
+                     ")");
   return found;
 }
 

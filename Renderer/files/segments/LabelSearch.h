@@ -2,6 +2,7 @@
 // Finds the names for a label map's values: in the table that the user requests, in the file
 // itself, or in a table beside it.
 
+#include "base/Error.h"
 #include "files/segments/LabelNames.h"
 
 #include <set>
@@ -9,16 +10,16 @@
 namespace fenestra {
 
 struct FoundNames {
-  LabelNames names = {};                  ///< empty: the values have no names
-  std::string source = {};                ///< file, or name of a built-in table
-  std::vector<std::string> warnings = {}; ///< each names the file
+  LabelNames names = {};   ///< empty: the values have no names
+  std::string source = {}; ///< file, or name of a built-in table
+  std::vector<Message> warnings = {};
 };
 
 /// Finds names for the `values` (without 0) of the label map at `path`. `requested` is a file, a
 /// built-in table, or "totalsegmentator", whose version follows from the label table in the NIfTI
 /// header `extensions`. If nothing is requested, uses that label table, else a table with the label
 /// map's stem that names all values, else a seg_labels.json that names exactly these values. A
-/// table beside the label map that does not match gives a warning. Throws Error (input, usage) if
+/// table beside the label map that does not match gives a warning. Throws Error (input, request) if
 /// the requested table does not exist or names none of the values.
 FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
                           const std::string& extensions,

@@ -250,23 +250,29 @@ bool isLikelyMatch(const std::string& selector, const std::string& name) {
   });
 }
 
-/// Hint for an unknown selector: likely matches, else all segments.
-std::string suggestSegments(const std::string& selector, const std::vector<SegmentInfo>& segments) {
+/// Error for an unknown selector, with likely matches, else all segments.
+Error makeUnknownError(const std::string& source, const std::string& selector,
+                       const std::vector<SegmentInfo>& segments) {
+  const auto makeError = [&](ErrorCode code, const std::string& hint) {
+    return inputError(code, source, "has no segment \"", sanitize(selector), "\"; ", hint);
+  };
   if (segments.empty())
-    return "it has no segments";
+    return makeError(ErrorCode::unknownName, "it has no segments");
   std::vector<SegmentInfo> suggested;
   std::ranges::copy_if(segments, std::back_inserter(suggested),
                        [&](const SegmentInfo& one) { return isLikelyMatch(selector, one.name); });
   if (!suggested.empty())
-    return concat("did you mean ",
-                  join(
-                      suggested, ", ", [](const auto& s) { return sanitize(s.name); }, maxListed),
-                  "?");
+    return makeError(
+        ErrorCode::unknownName,
+        concat("did you mean ",
+               join(
+                   suggested, ", ", [](const auto& s) { return sanitize(s.name); }, maxListed),
+               "?"));
   const bool unnamed = std::ranges::all_of(segments, [](const SegmentInfo& segment) {
     return segment.name == concat("Segment_", segment.labelValue);
   });
-  return concat("it has ", formatSegments(segments),
-                unnamed ? "; --labels can name the values" : "");
+  return makeError(unnamed ? ErrorCode::unnamedSegments : ErrorCode::unknownName,
+                   "it has " + formatSegments(segments));
 }
 
 } // namespace
@@ -281,7 +287,7 @@ std::size_t Segmentation::find(const std::string& selector) const {
     std::vector<SegmentInfo> found;
     std::ranges::copy_if(m_segments, std::back_inserter(found), matches);
     if (found.size() > 1)
-      throw inputError(m_source, "segment \"", sanitize(selector),
+      throw inputError(ErrorCode::ambiguousName, m_source, "segment \"", sanitize(selector),
                        "\" matches several: ", formatSegments(found), "; choose one by its id");
     if (!found.empty())
       return static_cast<std::size_t>(std::ranges::find_if(m_segments, matches) -
@@ -289,8 +295,7 @@ std::size_t Segmentation::find(const std::string& selector) const {
   }
   if (const std::string_view bare = trim(selector); bare.size() < selector.size())
     return find(std::string(bare));
-  throw inputError(m_source, "has no segment \"", sanitize(selector), "\"; ",
-                   suggestSegments(selector, m_segments));
+  throw makeUnknownError(m_source, selector, m_segments);
 }
 
 std::vector<SegmentStatistics> Segmentation::statistics() const {
@@ -316,15 +321,16 @@ std::vector<SegmentStatistics> Segmentation::statistics() const {
 Mask Segmentation::makeFocusMask(const std::vector<std::string>& selectors, const Grid& volume,
                                  const MaskShaping& shaping) const {
   if (shaping.margins.size() > 1 && shaping.margins.size() != selectors.size())
-    throw usageError("--margin: has ", shaping.margins.size(),
-                     " values; give one for all segments of --focus, or one per segment");
+    throw requestError(ErrorCode::marginCount, "margin", "has ", shaping.margins.size(),
+                       " values; give one for all segments of the focus, or one per segment");
   std::vector<SegmentInfo> chosen;
   for (const std::string& selector : selectors)
     chosen.push_back(m_segments[find(selector)]);
   Mask mask = makeMask(chosen, volume, shaping);
   if (mask.count == 0)
-    throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (",
-                     formatSegments(chosen), "); use a margin closer to 0, or less smoothing");
+    throw inputError(ErrorCode::emptyShapedFocus, m_source,
+                     "margin and smoothing leave nothing of the focus (", formatSegments(chosen),
+                     ")");
   return mask;
 }
 
@@ -341,8 +347,8 @@ Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& 
         },
         m_labels);
     if (mask.count == 0)
-      throw inputError(m_source, "the focus has no voxel (", formatSegments(segments),
-                       "); choose segments that are not empty");
+      throw inputError(ErrorCode::emptyFocus, m_source, "the focus has no voxel (",
+                       formatSegments(segments), "); choose segments that are not empty");
     return mask;
   };
   if (shaping == MaskShaping())

@@ -28,9 +28,11 @@ Segmentation::Labels toLabels(LabelStore&& samples, const std::string& source) {
   const SampleStats& s = samples.stats();
   if (!s.isIntegral || !s.isFinite())
     throw inputError(
-        source, "has values that are not integers, so it is not a labelmap; give a segmentation");
+        ErrorCode::unsupportedFile, source,
+        "has values that are not integers, so it is not a labelmap; give a segmentation");
   if (!samples.canHoldAll())
-    throw inputError(source, "has label values beyond 32 bits; renumber its labels");
+    throw inputError(ErrorCode::limitExceeded, source,
+                     "has label values beyond 32 bits; renumber its labels");
   return samples.take();
 }
 
@@ -44,8 +46,9 @@ std::set<std::int32_t> collectValues(const Segmentation::Labels& labels,
         for (const std::int32_t value : voxels)
           if (value != std::exchange(last, value) && value != 0 && values.insert(value).second &&
               values.size() > maxSegments)
-            throw inputError(source, "has more than 65536 different values, so it is not a "
-                                     "labelmap; give a segmentation");
+            throw inputError(ErrorCode::limitExceeded, source,
+                             "has more than 65536 different values, so it is not a "
+                             "labelmap; give a segmentation");
       },
       labels);
   return values;
@@ -69,7 +72,7 @@ std::vector<SegmentInfo> makeSegments(const std::set<std::int32_t>& values,
 
 void rejectLabels(const std::string& source, const std::optional<std::string>& labels) {
   if (labels)
-    throw inputError(source, "already names its segments; remove --labels");
+    throw inputError(ErrorCode::conflictingLabels, source, "already names its segments");
 }
 
 // ---- Slicer's header fields
@@ -85,7 +88,7 @@ Grid applyExtent(const Grid& grid, const Fields& fields, const std::string& sour
   for (const std::string& word : splitWords(extent->second))
     numbers.push_back(parseNumber<std::int32_t>(word).value_or(infinity));
   if (numbers.size() != 6 || std::ranges::count(numbers, infinity) > 0)
-    throw inputError(source, "Segmentation_Extent: must be six integers");
+    throw fieldError(source, "Segmentation_Extent", "must be six integers");
   const Vec3 first(numbers[0], numbers[2], numbers[4]);
   return {grid.size, Affine(lpsToRas) * grid.indexToWorld * makeTranslation(first)};
 }
@@ -153,8 +156,8 @@ std::vector<SegmentInfo> readSegments(const Fields& fields, const std::string& s
   for (const char* field :
        {"Segmentation_MasterRepresentation", "Segmentation_SourceRepresentation"})
     if (header::findValue(fields, field).starts_with("Fractional"))
-      throw inputError(source, field,
-                       ": is a fractional labelmap, which is not supported; export the "
+      throw fieldError(source, field,
+                       "is a fractional labelmap, which is not supported; export the "
                        "segmentation in Slicer as a binary labelmap (.seg.nrrd)");
   std::vector<SegmentInfo> segments;
   while (segments.size() < maxSegments) {
@@ -234,7 +237,7 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
     labels = interleaveLayers(std::move(labels), image.components);
   auto segments = readSegments(image.fields, source, image.components);
   if (segments.empty() && image.components > 1)
-    throw inputError(source, "has ", image.components,
+    throw inputError(ErrorCode::unsupportedFile, source, "has ", image.components,
                      " components per voxel but names no segments; give a segmentation");
   FoundNames found;
   if (!segments.empty()) {

@@ -1,6 +1,7 @@
 #pragma once
 // Reads segmentations, and makes focus masks from their segments.
 
+#include "base/Error.h"
 #include "base/LargePages.h"
 #include "base/Vector.h"
 #include "model/masks/MaskShaping.h"
@@ -57,8 +58,8 @@ public:
   /// File or table that names the label values; empty: they have no names, or the segmentation's
   /// own.
   const std::string& namesSource() const { return m_namesSource; }
-  const std::vector<std::string>& warnings() const { return m_warnings; }
-  void setNamesSource(std::string source, std::vector<std::string> warnings) {
+  const std::vector<Message>& warnings() const { return m_warnings; }
+  void setNamesSource(std::string source, std::vector<Message> warnings) {
     m_namesSource = std::move(source);
     m_warnings = std::move(warnings);
   }
@@ -85,7 +86,7 @@ public:
 
 private:
   std::string m_source, m_namesSource;
-  std::vector<std::string> m_warnings;
+  std::vector<Message> m_warnings;
   Grid m_grid;
   std::size_t m_layerCount;
   Labels m_labels;

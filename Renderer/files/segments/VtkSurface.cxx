@@ -15,11 +15,13 @@ namespace {
 
 /// Thrown by the functions below; readVtkSurface adds the file name and a hint.
 struct SurfaceError {
+  ErrorCode code;
   const char* reason;
 };
-constexpr SurfaceError damagedSurface{"is damaged or not a surface as Slicer writes it"};
+constexpr SurfaceError damagedSurface{ErrorCode::damagedFile,
+                                      "is damaged or not a surface as Slicer writes it"};
 constexpr SurfaceError largeSurface{
-    "needs, with the surfaces before it, more than 1 GiB of memory"};
+    ErrorCode::limitExceeded, "needs, with the surfaces before it, more than 1 GiB of memory"};
 
 /// Deducts `count` * `size` bytes from the budget.
 void charge(MemoryBudget& budget, std::uint64_t count, std::uint64_t size = 1) {
@@ -251,7 +253,7 @@ VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std:
       throw damagedSurface;
     return readSurface(document, fieldData, budget);
   } catch (const SurfaceError& error) {
-    throw inputError(path, error.reason,
+    throw inputError(error.code, path, error.reason,
                      "; export the segmentation in Slicer as a binary labelmap (.seg.nrrd)");
   }
 }

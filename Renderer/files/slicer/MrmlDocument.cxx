@@ -119,15 +119,16 @@ MrmlDocument::MrmlDocument(std::string_view text, std::string source)
   const pugi::xml_parse_result result =
       document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_doctype);
   if (!result)
-    throw inputError(m_source, "is not complete XML (", result.description(), " at byte ",
-                     result.offset, "); save the scene again");
+    throw inputError(ErrorCode::damagedFile, m_source, "is not complete XML (",
+                     result.description(), " at byte ", result.offset, "); save the scene again");
   for (const pugi::xml_node& child : document)
     if (child.type() == pugi::node_doctype)
       throw inputError(m_source, "has a document type, which could define entities and is never "
                                  "needed in MRML; remove the line <!DOCTYPE ...>");
   const pugi::xml_node root = document.child("MRML");
   if (!root)
-    throw inputError(m_source, "has no MRML element, so it is not a scene; give a .mrml or .mrb");
+    throw inputError(ErrorCode::unsupportedFile, m_source,
+                     "has no MRML element, so it is not a scene; give a .mrml or .mrb");
   m_version = root.attribute("version").value();
   FileNameCollector names;
   document.traverse(names);
@@ -136,11 +137,13 @@ MrmlDocument::MrmlDocument(std::string_view text, std::string source)
   for (const pugi::xml_node& element : root.children())
     if (element.type() == pugi::node_element) {
       if (m_nodes.size() == maxNodes)
-        throw inputError(m_source, "has more than 100000 nodes; save a smaller scene");
+        throw inputError(ErrorCode::limitExceeded, m_source,
+                         "has more than 100000 nodes; save a smaller scene");
       m_nodes.push_back(readNode(element));
       attributes += m_nodes.back().attributes.size();
       if (attributes > maxAttributes)
-        throw inputError(m_source, "has more than a million attributes; save a smaller scene");
+        throw inputError(ErrorCode::limitExceeded, m_source,
+                         "has more than a million attributes; save a smaller scene");
       if (!m_nodes.back().id.empty())
         m_byId.emplace(m_nodes.back().id, m_nodes.size() - 1);
     }
@@ -159,13 +162,15 @@ const MrmlNode* MrmlDocument::find(const std::string& id) const {
   return it == m_byId.end() ? nullptr : &m_nodes[it->second];
 }
 
-Error MrmlDocument::error(const MrmlNode& node, const std::string& what) const {
-  return inputError(m_source, node.tag, " ", describeNode(node), ": ", what);
+Error MrmlDocument::error(const MrmlNode& node, const std::string& what, ErrorCode code) const {
+  return inputError(code, concat(m_source, ": ", node.tag, " ", describeNode(node)), what);
 }
 
 MakeError MrmlDocument::bindError(const MrmlNode& node, const std::string& subject,
-                                  const std::string& hint) const {
-  return [=, this, &node](const std::string& what) { return error(node, subject + what + hint); };
+                                  const std::string& hint, ErrorCode code) const {
+  return [=, this, &node](const std::string& what) {
+    return error(node, subject + what + hint, code);
+  };
 }
 
 std::string describeNode(const MrmlNode& node) {

@@ -58,10 +58,11 @@ public:
   }
 
   /// Error (input) that states the file and the node.
-  Error error(const MrmlNode& node, const std::string& what) const;
+  Error error(const MrmlNode& node, const std::string& what,
+              ErrorCode code = ErrorCode::invalidField) const;
   /// Factory of such errors for a check; adds `subject` before its text and `hint` after it.
   MakeError bindError(const MrmlNode& node, const std::string& subject = "",
-                      const std::string& hint = "") const;
+                      const std::string& hint = "", ErrorCode code = ErrorCode::invalidField) const;
 
 private:
   std::string m_source, m_version;

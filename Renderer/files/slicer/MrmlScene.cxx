@@ -107,7 +107,7 @@ Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
     return findMedicalFormat(files.front()) ? readVolume(files.front())
                                             : readDicomVolume(files, node.name);
   });
-  for (std::string& warning : volume.warnings)
+  for (Message& warning : volume.warnings)
     warning = scene.files.translatePaths(warning);
   const Grid grid = applyStorageSettings(scene.document.follow(node, "storage"), volume.grid);
   volume.grid = transformGrid(scene, node, nodeToWorld, grid);
@@ -169,8 +169,8 @@ TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property) {
   const std::vector<std::string> names = listStorageFiles(scene, property);
   const bool isInline = property.find("scalarOpacity") && property.find("colorTransfer");
   if (names.empty() && !isInline)
-    throw scene.document.error(property, "has neither a file nor points; save the volume "
-                                         "property, or give --transfer");
+    throw scene.document.error(property, "has neither a file nor points",
+                               ErrorCode::missingTransferPoints);
   if (names.empty())
     return readInlineProperty(scene.document, property);
   return scene.files.read(names,

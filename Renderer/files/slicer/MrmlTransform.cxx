@@ -110,13 +110,15 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
   const auto triple = [&](const std::string& attribute) {
     if (const auto numbers = camera.triple(attribute))
       return *numbers;
-    throw scene.document.error(camera, attribute + ": must be three numbers; give --view");
+    throw scene.document.error(camera, attribute + ": must be three numbers",
+                               ErrorCode::invalidSceneCamera);
   };
   const auto number = [&](const std::string& attribute, double fallback, double maxValue) {
     const double number =
         camera.number(attribute).value_or(camera.find(attribute) ? 0.0 : fallback);
     if (!(number > 0.0 && number <= maxValue))
-      throw scene.document.error(camera, attribute + ": is out of range; give --view");
+      throw scene.document.error(camera, attribute + ": is out of range",
+                                 ErrorCode::invalidSceneCamera);
     return number;
   };
   CameraPose pose;
@@ -138,7 +140,8 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
     pose.target = change * pose.target;
     pose.up = change.linear() * pose.up;
   }
-  return validatePose(pose, scene.document.bindError(camera, "has a bad pose: ", "; give --view"));
+  return validatePose(pose, scene.document.bindError(camera, "has a bad pose: ", "",
+                                                     ErrorCode::invalidSceneCamera));
 }
 
 } // namespace fenestra

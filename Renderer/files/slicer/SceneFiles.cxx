@@ -60,11 +60,11 @@ private:
   };
   using Chunk = std::function<void(std::string_view)>;
 
-  Error error(const std::filesystem::path& file, const std::string& what) const {
-    return inputError(m_source, toOneLine(file.string()), ": ", what);
+  Error error(ErrorCode code, const std::filesystem::path& file, const std::string& what) const {
+    return inputError(code, concat(m_source, ": ", toOneLine(file.string())), what);
   }
   Error makeDamagedError(const std::filesystem::path& file) const {
-    return error(file, "is damaged; save the scene again");
+    return error(ErrorCode::damagedFile, file, "is damaged; save the scene again");
   }
 
   zip_stat_t stat(std::uint64_t entry, const std::filesystem::path& file) const {
@@ -74,9 +74,11 @@ private:
     if (zip_stat_index(m_archive.get(), entry, 0, &stat) != 0 || (stat.valid & needed) != needed)
       throw makeDamagedError(file);
     if (stat.encryption_method != ZIP_EM_NONE)
-      throw error(file, "is encrypted; save the scene without a password");
+      throw error(ErrorCode::unsupportedFile, file,
+                  "is encrypted; save the scene without a password");
     if (stat.size / maxRatio > stat.comp_size)
-      throw error(file, "declares more bytes than it can hold; save the scene again");
+      throw error(ErrorCode::damagedFile, file,
+                  "declares more bytes than it can hold; save the scene again");
     return stat;
   }
 
@@ -115,12 +117,14 @@ SceneArchive::SceneArchive(const std::filesystem::path& path) : m_source(path.st
   if (!zip && (failure == ZIP_ER_OPEN || failure == ZIP_ER_READ) && errno != 0)
     throw readError(path, errno, "check its permissions");
   if (!zip)
-    throw inputError(m_source, "is not a complete archive; save the scene again, or use its .mrml");
+    throw inputError(ErrorCode::damagedFile, m_source,
+                     "is not a complete archive; save the scene again, or use its .mrml");
   m_archive.reset(zip);
   m_remainingBytes = maxUnpackedBytes(std::filesystem::file_size(path));
   const zip_int64_t count = zip_get_num_entries(zip, 0);
   if (count > maxEntries)
-    throw inputError(m_source, "has more than a million files; save a smaller scene");
+    throw inputError(ErrorCode::limitExceeded, m_source,
+                     "has more than a million files; save a smaller scene");
 
   for (std::uint64_t entry = 0; entry < static_cast<std::uint64_t>(count); ++entry) {
     const char* name = zip_get_name(zip, entry, 0);
@@ -128,8 +132,8 @@ SceneArchive::SceneArchive(const std::filesystem::path& path) : m_source(path.st
       throw inputError(m_source, "has an entry without a name; save the scene again");
     const std::filesystem::path file = name;
     if (isOutside(file))
-      throw inputError(m_source, "has an entry that leads out of the archive (",
-                       sanitize(file.string()),
+      throw inputError(ErrorCode::outsideArchive, m_source,
+                       "has an entry that leads out of the archive (", sanitize(file.string()),
                        "), which Slicer never writes; do not trust this archive");
     if (!file.empty() && file.has_filename())
       m_files.try_emplace(file.lexically_normal(), entry);
@@ -141,8 +145,9 @@ void SceneArchive::extract(const std::filesystem::path& file,
   const std::uint64_t entry = m_files.at(file);
   const std::uint64_t size = stat(entry, file).size;
   if (size > m_remainingBytes)
-    throw error(file, "unpacks, together with the files before it, to more than the limit for an "
-                      "archive of this size; save the scene again, or unpack it yourself");
+    throw error(ErrorCode::limitExceeded, file,
+                "unpacks, together with the files before it, to more than the limit for an "
+                "archive of this size; save the scene again, or unpack it yourself");
   m_remainingBytes -= size;
   const auto makeUnpackError = [&](int code) {
     return outputError(toOneLine(destination.string()), toOneLine(file.string()),
@@ -168,7 +173,8 @@ std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t 
   const std::uint64_t entry = m_files.at(file);
   const std::uint64_t size = stat(entry, file).size;
   if (size > maxBytes)
-    throw error(file, concat("is larger than ", maxBytes >> 20, " MB; save a smaller scene"));
+    throw error(ErrorCode::limitExceeded, file,
+                concat("is larger than ", maxBytes >> 20, " MB; save a smaller scene"));
   std::string text;
   read(entry, file, size, [&](std::string_view chunk) { text += chunk; });
   return text;
@@ -195,7 +201,8 @@ std::filesystem::path findMainScene(const SceneArchive& archive,
     if (lowercaseExtension(file) == ".mrml")
       closest.push_back(file);
   if (closest.empty())
-    throw inputError(path, "has no .mrml, so it is not a scene; save it again from Slicer");
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "has no .mrml, so it is not a scene; save it again from Slicer");
   const auto least = countParts(*std::ranges::min_element(closest, {}, countParts));
   std::erase_if(closest, [least](const auto& file) { return countParts(file) > least; });
   if (closest.size() == 1)
@@ -208,7 +215,7 @@ std::filesystem::path findMainScene(const SceneArchive& archive,
     return named.front();
   const std::string names =
       join(closest, ", ", [](const auto& file) { return toOneLine(file.string()); });
-  throw inputError(path, "has several scenes (", names.substr(0, 300),
+  throw inputError(ErrorCode::ambiguousName, path, "has several scenes (", names.substr(0, 300),
                    "); unpack it and give one of them");
 }
 
@@ -265,25 +272,28 @@ bool SceneFiles::contains(const std::string& fileName) const {
 std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   const std::filesystem::path name = decodeUrl(fileName);
   std::filesystem::path file = resolve(fileName);
-  const auto makeError = [this](const std::filesystem::path& named, const std::string& why) {
-    return inputError(m_source, "names ", toOneLine(named.string()), ", which ", why);
+  const auto makeError = [this](ErrorCode code, const std::filesystem::path& named,
+                                const std::string& why) {
+    return inputError(code, concat(m_source, ": ", toOneLine(named.string())), why);
   };
   if (!m_archive) {
     std::error_code failed;
     const bool exists = std::filesystem::exists(file, failed);
     if (failed)
-      throw makeError(file,
+      throw makeError(ErrorCode::unreadableFile, file,
                       concat("cannot be read: ", systemMessage(failed.value()), "; ",
                              readHint(failed.value(), "check the permissions of its folder")));
     if (!exists)
-      throw makeError(file, "does not exist; restore it, or save the scene again");
+      throw makeError(ErrorCode::missingFile, file,
+                      "does not exist; restore it, or save the scene again");
     m_usedFiles.insert(file);
     return file;
   }
   if (name.is_absolute() || *file.begin() == "..")
-    throw makeError(name, "is outside the archive; save the scene again");
+    throw makeError(ErrorCode::outsideArchive, name,
+                    "is outside the archive; save the scene again");
   if (!m_archive->files().contains(file))
-    throw makeError(file, "is not in the archive; save the scene again");
+    throw makeError(ErrorCode::missingFile, file, "is not in the archive; save the scene again");
   std::filesystem::path unpacked = unpack(file);
   const std::filesystem::path root = m_unpackFolder->path().lexically_normal();
   for (const std::filesystem::path& part : findReferencedFiles(unpacked))
@@ -300,8 +310,8 @@ std::filesystem::path SceneFiles::unpack(const std::filesystem::path& file) {
   if (!m_unpackFolder)
     m_unpackFolder.emplace();
   if (isTooLong(m_unpackFolder->path() / file))
-    throw inputError(m_source, "names ", sanitize(file.string()),
-                     ", which exceeds the system's limit for file names; save the scene again with "
+    throw inputError(ErrorCode::limitExceeded, concat(m_source, ": ", sanitize(file.string())),
+                     "exceeds the system's limit for file names; save the scene again with "
                      "shorter names");
   const std::filesystem::path destination = m_unpackFolder->add(file);
   m_archive->extract(file, destination);
@@ -315,10 +325,10 @@ std::vector<std::string> SceneFiles::usedFiles() const {
   return files;
 }
 
-std::string SceneFiles::translatePaths(std::string message) const {
+std::string SceneFiles::translatePaths(std::string text) const {
   if (m_unpackFolder)
-    message = replaceAll(message, m_unpackFolder->path().string(), m_source);
-  return toOneLine(std::move(message));
+    text = replaceAll(text, m_unpackFolder->path().string(), m_source);
+  return toOneLine(std::move(text));
 }
 
 } // namespace fenestra

@@ -71,11 +71,14 @@ public:
     try {
       return work();
     } catch (const Error& error) {
-      throw Error(error.kind(), translatePaths(error.what()));
+      throw Error(error.kind(), translatePaths(error.message()));
     }
   }
-  /// Replaces paths of unpacked files in a message by names that the user knows; one line.
-  std::string translatePaths(std::string message) const;
+  /// Replaces paths of unpacked files in a text by names that the user knows; one line.
+  std::string translatePaths(std::string text) const;
+  Message translatePaths(const Message& message) const {
+    return {message.code, translatePaths(message.subject), translatePaths(message.detail)};
+  }
 
 private:
   std::filesystem::path resolve(const std::string& fileName) const;

@@ -31,26 +31,26 @@ std::string formatNodes(const Nodes& nodes) {
 }
 
 /// Node by id, else by name; null: none. Throws Error (input) if several have the name.
-const MrmlNode* findNamed(const MrmlDocument& document, const Nodes& nodes, const std::string& name,
-                          const std::string& option) {
+const MrmlNode* findNamed(const MrmlDocument& document, const Nodes& nodes,
+                          const std::string& name) {
   const Nodes byId = filterNodes(nodes, [&](const MrmlNode& node) { return node.id == name; });
   if (!byId.empty())
     return byId.front();
   const Nodes byName = filterNodes(nodes, [&](const MrmlNode& node) { return node.name == name; });
   if (byName.size() > 1)
-    throw inputError(document.source(), "--", option, " ", name,
-                     " matches several: ", formatNodes(byName), "; choose one by its id");
+    throw inputError(ErrorCode::ambiguousName, document.source(), "\"", name,
+                     "\" matches several: ", formatNodes(byName), "; choose one by its id");
   return byName.empty() ? nullptr : byName.front();
 }
 
 /// Node of the first list that is not empty; null: all are empty. Throws Error (input) if that list
 /// has several nodes.
 const MrmlNode* findSingle(const MrmlDocument& document, std::initializer_list<const Nodes*> lists,
-                           const char* what, const char* option) {
+                           const char* what, ErrorCode ambiguous) {
   for (const Nodes* candidates : lists)
     if (candidates->size() > 1)
-      throw inputError(document.source(), "has several ", what, " (", formatNodes(*candidates),
-                       "); choose one with --", option);
+      throw inputError(ambiguous, document.source(), "has several ", what, " (",
+                       formatNodes(*candidates), ")");
     else if (!candidates->empty())
       return candidates->front();
   return nullptr;
@@ -82,10 +82,10 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
   if (volumes.empty())
     throw inputError(document.source(), "has no scalar volume; add one in Slicer and save again");
   if (choice) {
-    if (const MrmlNode* volume = findNamed(document, volumes, *choice, "volume"))
+    if (const MrmlNode* volume = findNamed(document, volumes, *choice))
       return volume;
-    throw inputError(document.source(), "has no scalar volume \"", *choice, "\"; it has ",
-                     formatNodes(volumes));
+    throw inputError(ErrorCode::unknownName, document.source(), "has no scalar volume \"", *choice,
+                     "\"; it has ", formatNodes(volumes));
   }
   // Candidates in order of preference: rendered in Slicer, renderable, active in Slicer, all.
   const Nodes rendered = filterNodes(volumes, [&](const MrmlNode& volume) {
@@ -100,7 +100,7 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
   const Nodes active =
       filterNodes(volumes, [&](const MrmlNode& volume) { return selected.contains(volume.id); });
   return findSingle(document, {&rendered, &renderable, &active, &volumes}, "volumes to render",
-                    "volume");
+                    ErrorCode::ambiguousVolume);
 }
 
 const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneSelection& choice) {
@@ -109,7 +109,7 @@ const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneSele
   Nodes both = segmentations;
   both.insert(both.end(), labelMaps.begin(), labelMaps.end());
   if (choice.segmentation)
-    return findNamed(document, both, *choice.segmentation, "segmentation");
+    return findNamed(document, both, *choice.segmentation);
   if (!choice.needsSegmentation)
     return nullptr;
   const Nodes visible = filterNodes(segmentations, [&](const MrmlNode& node) {
@@ -117,10 +117,10 @@ const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneSele
     return !display || isVisible(*display);
   });
   if (const MrmlNode* one = findSingle(document, {&visible, &segmentations, &labelMaps},
-                                       "segmentations", "segmentation"))
+                                       "segmentations", ErrorCode::ambiguousSegmentation))
     return one;
-  throw inputError(document.source(),
-                   "has no segmentation, but a focus needs one; give --segmentation FILE");
+  throw inputError(ErrorCode::segmentationRequired, document.source(),
+                   "has no segmentation, but a focus needs one");
 }
 
 /// Rank of a view; the highest is most likely the one that the user last used.
@@ -172,13 +172,19 @@ void rejectTechnique(const MrmlDocument& document, const MrmlNode* node) {
       {"3", "a minimum intensity projection"}};
   if (const auto technique = unsupported.find(node->text("raycastTechnique"));
       technique != unsupported.end())
-    throw document.error(*node, "raycastTechnique is " + technique->second +
-                                    ", which path tracing cannot render; set it to Composite "
-                                    "(Volume Rendering module), or render the volume's own file");
+    throw document.error(*node,
+                         "raycastTechnique is " + technique->second +
+                             ", which path tracing cannot render; set it to Composite "
+                             "(Volume Rendering module), or render the volume's own file",
+                         ErrorCode::unsupportedFile);
+}
+
+std::string formatNode(const MrmlNode& node) {
+  return node.tag + " " + describeNode(node);
 }
 
 std::string formatReason(const MrmlNode& node, const std::string& why) {
-  return node.tag + " " + describeNode(node) + ": " + why;
+  return formatNode(node) + ": " + why;
 }
 
 void addReasons(const Nodes& nodes, const std::string& why, std::vector<std::string>& list) {
@@ -196,16 +202,18 @@ void listRenderingSettings(const MrmlDocument& document, ScenePlan& plan) {
   if (!isVisible(rendering))
     plan.ignored.push_back(
         formatReason(rendering, "is hidden in Slicer; its settings are used anyway"));
+  const auto warn = [&plan](const MrmlNode& node, const std::string& why) {
+    plan.warnings.push_back(makeMessage(ErrorCode::ignoredSceneSetting, formatNode(node), why));
+  };
   if (const MrmlNode* clip = document.follow(rendering, "ClipNode");
       clip && rendering.boolean("clipping", false))
-    plan.warnings.push_back(
-        formatReason(*clip, "clips the rendering in Slicer, but is ignored here"));
+    warn(*clip, "clips the rendering in Slicer, but is ignored here");
   if (const MrmlNode* shader = document.follow(rendering, "shaderProperty"))
     plan.ignored.push_back(formatReason(*shader, "path tracing does not use shaders"));
   if (const MrmlNode* roi = document.follow(rendering, "roi"); roi && !plan.roi)
     plan.ignored.push_back(formatReason(*roi, "cropping is off"));
   if (!plan.roi && rendering.boolean("croppingEnabled", false))
-    plan.warnings.push_back(formatReason(rendering, "cropping is on without a region of interest"));
+    warn(rendering, "cropping is on without a region of interest");
 }
 
 void listUnused(const MrmlDocument& document, ScenePlan& plan) {

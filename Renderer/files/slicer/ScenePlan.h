@@ -26,9 +26,9 @@ struct ScenePlan {
   const MrmlNode* roi = nullptr;          ///< crop box of the rendering
   const MrmlNode* segmentation = nullptr; ///< segmentation or label map
   const MrmlNode* view = nullptr;
-  const MrmlNode* camera = nullptr;       ///< the view's camera
-  std::vector<std::string> warnings = {}; ///< "node: reason" for each difference from Slicer
-  std::vector<std::string> ignored = {};  ///< "node: reason" for each unused node or setting
+  const MrmlNode* camera = nullptr;      ///< the view's camera
+  std::vector<Message> warnings = {};    ///< "node: reason" for each difference from Slicer
+  std::vector<std::string> ignored = {}; ///< "node: reason" for each unused node or setting
 };
 
 /// Throws Error (input) if the choice is ambiguous (the message lists the candidates), there is no

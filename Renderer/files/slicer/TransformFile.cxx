@@ -161,7 +161,8 @@ struct TransformRecord {
 };
 
 [[noreturn]] void throwDamaged(const Path& path) {
-  throw inputError(path, "is damaged, truncated or not an ITK transform; save it again");
+  throw inputError(ErrorCode::damagedFile, path,
+                   "is damaged, truncated or not an ITK transform; save it again");
 }
 
 /// Base class of ITK's transforms that have a matrix and an offset.
@@ -187,10 +188,9 @@ std::string requireLinearType(const Path& path, const std::string& name) {
   const bool isSimple =
       type == "CompositeTransform" || type == "IdentityTransform" || type == "TranslationTransform";
   if (!isSimple && !makeMatrixTransform(type))
-    throw inputError(path, "Transform: ", sanitize(name), " is not linear; ", hardenHint);
+    throw fieldError(path, "Transform", sanitize(name), " is not linear; ", hardenHint);
   if (name != type + "_double_3_3") // ITK's readers turn _float_ into _double_
-    throw inputError(path, "Transform: ", sanitize(name),
-                     " is not a 3D transform; save one that is");
+    throw fieldError(path, "Transform", sanitize(name), " is not a 3D transform; save one that is");
   return type;
 }
 
@@ -257,17 +257,18 @@ void checkExtension(const Path& path) {
   static const std::set<std::string> known = {".tfm", ".txt", ".h5", ".hdf5", ".mat"},
                                      images = {".nrrd", ".nhdr", ".nii", ".gz", ".mha", ".mhd"};
   if (images.contains(extension))
-    throw inputError(path, "is a displacement field, which is not linear; ", hardenHint);
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "is a displacement field, which is not linear; ", hardenHint);
   if (!known.contains(extension))
-    throw inputError(path,
+    throw inputError(ErrorCode::unsupportedFile, path,
                      "has no extension of a transform; give a .tfm, .txt, .h5, .hdf5 or .mat file");
 }
 
 /// Rejects text files that reference other files, which ITK would open.
 void checkNoFileReference(const Path& path) {
   if (readText(path, maxFileBytes).find("ComponentTransformFile") != std::string::npos)
-    throw inputError(path,
-                     "ComponentTransformFile: is not supported; save the composite in one file");
+    throw fieldError(path, "ComponentTransformFile",
+                     "is not supported; save the composite in one file");
 }
 
 } // namespace
@@ -278,7 +279,7 @@ Affine readLinearTransform(const Path& path) {
   const bool isText = extension == ".tfm" || extension == ".txt";
   const std::uint64_t largest = isText ? maxTextFileBytes : maxFileBytes;
   if (std::filesystem::file_size(path) > largest)
-    throw inputError(path, "is larger than ", largest >> 20,
+    throw inputError(ErrorCode::limitExceeded, path, "is larger than ", largest >> 20,
                      " MB, so it is not a linear transform; ", hardenHint);
   checkExtension(path);
   checkNoFileReference(path);
@@ -292,7 +293,7 @@ Affine parseTransformReply(const Path& path, std::string_view reply) {
     const SuppressItkOutput suppress;
     const Affine map =
         checkAffine(compose(path, parseRecords(path, reply)), [&path](const std::string& what) {
-          return inputError(path, "Parameters: the map ", what, "; save another one");
+          return fieldError(path, "Parameters", "the map ", what, "; save another one");
         });
     return Affine(lpsToRas * map.linear() * lpsToRas, lpsToRas * map.translation());
   } catch (const Error&) {

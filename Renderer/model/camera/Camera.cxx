@@ -31,7 +31,7 @@ CameraPose rotateAroundTarget(const CameraPose& pose, double degrees) {
 Camera::Camera(const CameraPose& pose, int width, int height)
     : m_pose(validatePose(pose,
                           [](const std::string& what) {
-                            return usageError("--position, --target, --up: " + what);
+                            return requestError(ErrorCode::invalidCamera, "camera", what);
                           })),
       m_width(width),
       m_height(height) {

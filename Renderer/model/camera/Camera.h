@@ -29,7 +29,7 @@ CameraPose rotateAroundTarget(const CameraPose& pose, double degrees);
 
 class Camera {
 public:
-  /// Throws Error (usage) if validatePose() rejects `pose`.
+  /// Throws Error (request) if validatePose() rejects `pose`.
   Camera(const CameraPose& pose, int width, int height);
 
   int width() const { return m_width; }

@@ -38,8 +38,8 @@ Region padRegion(const Mask& mask, double padding, const Grid& volume) {
   constexpr double fewest = 4.0; // voxels; minimum for recursive filters and ContextStyle
   const Vec3 size = (end - first + Vec3::Ones()).cwiseMax(fewest);
   if (size.prod() > 0x1p31)
-    throw outputError("--margin and --labelsmoothing",
-                      "the padded focus has more than 2^31 voxels; choose smaller values");
+    throw outputError(ErrorCode::largeShapedFocus, "focus",
+                      "with its margin and smoothing it has more than 2^31 voxels");
   return {first.cast<std::int64_t>(), size.cast<std::int64_t>()};
 }
 

@@ -178,18 +178,17 @@ template <typename Node>
 void checkNodes(const std::vector<Node>& nodes, const std::string& name,
                 const std::string& source) {
   if (nodes.empty() || nodes.size() > maxNodes)
-    throw inputError(source, name + ": has " + std::to_string(nodes.size()) +
-                                 " points; expected 1 to " + std::to_string(maxNodes));
+    throw fieldError(source, name, "has ", nodes.size(), " points; expected 1 to ", maxNodes);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const std::string place = name + ", point " + std::to_string(i + 1) + ": ";
+    const std::string place = name + ", point " + std::to_string(i + 1);
     const Node& node = nodes[i];
     if (!(std::abs(node.x) <= 1e38) || (i > 0 && node.x < nodes[i - 1].x))
-      throw inputError(source,
-                       place + "x must be at most 1e38 and not less than the previous point's");
+      throw fieldError(source, place,
+                       "x must be at most 1e38 and not less than the previous point's");
     if (!isInUnitRange(node.value))
-      throw inputError(source, place + "value must be from 0 to 1");
+      throw fieldError(source, place, "value must be from 0 to 1");
     if (!isInUnitRange(node.midpoint) || !isInUnitRange(node.sharpness))
-      throw inputError(source, place + "midpoint and sharpness must be from 0 to 1");
+      throw fieldError(source, place, "midpoint and sharpness must be from 0 to 1");
   }
 }
 
@@ -200,7 +199,7 @@ void check(const VolumeProperty& p, const std::string& source) {
     checkNodes(p.gradientOpacity, "gradient opacity", source);
   const auto require = [&](bool isUsable, const char* field, const char* hint) {
     if (!isUsable)
-      throw inputError(source, field, ": ", hint);
+      throw fieldError(source, field, hint);
   };
   require(p.unitDistance > 0.0 && std::isfinite(p.unitDistance), "scalarOpacityUnitDistance",
           "must be greater than 0 mm");

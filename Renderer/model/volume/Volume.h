@@ -3,6 +3,7 @@
 // Voxels are never converted: code that reads them is a template on their type, and
 // integrator/render/Render.h dispatches on it once.
 
+#include "base/Error.h"
 #include "base/LargePages.h"
 #include "model/volume/Grid.h"
 
@@ -30,7 +31,7 @@ struct Volume {
   double minimum = 0.0; ///< smallest voxel value
   double maximum = 0.0;
   std::string name; ///< file name, for messages
-  std::vector<std::string> warnings;
+  std::vector<Message> warnings;
 };
 
 /// Computes minimum and maximum from the voxels.
