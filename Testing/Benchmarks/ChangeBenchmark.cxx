@@ -3,10 +3,11 @@
 //     ChangeBenchmark FOCUS ARGUMENTS...     (FOCUS: the new focus, or the recolored segment;
 //                                             ARGUMENTS: of `fenestra`); prints CSV
 
-#include "base/Error.h"
 #include "base/Stopwatch.h"
 #include "program/CommandLine.h"
+#include "program/ErrorAdvice.h"
 #include "program/RenderOptions.h"
+#include "program/UsageError.h"
 #include "scene/PreparedScene.h"
 
 #include <functional>
@@ -103,6 +104,6 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const fenestra::Error& error) {
     std::cerr << "ChangeBenchmark: " << error.what() << '\n';
-    return error.exitStatus();
+    return exitStatus(error.kind());
   }
 }

@@ -6,6 +6,7 @@
 #include "denoise/features/Denoising.h"
 #include "image/Compare.h"
 #include "program/CommandLine.h"
+#include "program/UsageError.h"
 #include "scene/PreparedScene.h"
 
 #include <algorithm>

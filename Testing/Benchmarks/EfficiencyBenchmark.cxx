@@ -4,8 +4,8 @@
 #include "Curve.h"
 #include "Program.h"
 
-#include "base/Error.h"
 #include "program/CommandLine.h"
+#include "program/UsageError.h"
 
 #include <algorithm>
 #include <iomanip>

@@ -1,8 +1,7 @@
 #include "Modes.h"
 
 #include "Baselines.h"
-
-#include "base/Error.h"
+#include "program/UsageError.h"
 
 namespace fenestra::benchmarks {
 namespace {

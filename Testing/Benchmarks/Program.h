@@ -1,7 +1,7 @@
 #pragma once
 // Parts of the benchmark programs: CPU time, and error handling of main().
 
-#include "base/Error.h"
+#include "program/ErrorAdvice.h"
 
 #include <sys/resource.h>
 
@@ -26,7 +26,7 @@ inline int runBenchmark(const char* name, int (*benchmark)(int, char**), int arg
     return benchmark(argc, argv);
   } catch (const Error& error) {
     std::cerr << name << ": " << error.what() << '\n';
-    return error.exitStatus();
+    return exitStatus(error.kind());
   } catch (const std::exception& error) {
     std::cerr << name << ": " << error.what() << '\n';
     return 1;

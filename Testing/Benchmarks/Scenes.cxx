@@ -2,6 +2,7 @@
 
 #include "base/Error.h"
 #include "program/CommandLine.h"
+#include "program/UsageError.h"
 
 #include <cstdlib>
 #include <fstream>

@@ -79,14 +79,14 @@ TEST_F(CheckpointCommand, CheckpointOfAnotherRenderIsRejected) {
     return arguments;
   };
   std::vector<ExpectedError> errors = {
-      makeError("seed", addSize({"--seed", "3"}), "--seed was not given, is 3"),
-      makeError("size", {"--size", "16x17", "--samples", "2"}, "--size was 16x16, is 16x17"),
-      makeError("view", addSize({"--view", "left"}), "--view was not given, is left"),
-      makeError("transfer", addSize({"--transfer", "other.json"}),
-                "--transfer was not given, is other"),
-      makeError("bounces", addSize({"--bounces", "1"}), "--bounces"),
-      makeError("sampling", addSize({"--sampling", "independent"}), "--sampling"),
-      makeError("fewer samples", {"--size", "16x16", "--samples", "1"}, "has up to 2 samples"),
+      makeError("seed", addSize({"--seed", "3"}), "a.film: | --seed"),
+      makeError("size", {"--size", "16x17", "--samples", "2"}, "a.film: | --size | 16x16 | 16x17"),
+      makeError("view", addSize({"--view", "left"}), "a.film: | --view | left"),
+      makeError("transfer", addSize({"--transfer", "other.json"}), "a.film: | --transfer | other"),
+      makeError("bounces", addSize({"--bounces", "1"}), "a.film: | --bounces"),
+      makeError("sampling", addSize({"--sampling", "independent"}), "a.film: | --sampling"),
+      makeError("fewer samples", {"--size", "16x16", "--samples", "1"},
+                "--samples: | a.film | 2 samples"),
       makeError("turntable", {}, "--checkpoint: not needed"),
   };
   errors.back().arguments.insert(errors.back().arguments.begin(), "turntable");

@@ -97,12 +97,41 @@ inline std::set<std::string> listFiles(const std::filesystem::path& folder) {
   return names;
 }
 
-/// Command line that must fail with this exit status and message.
+/// Expects that a message states `expected`: its subject and perhaps a field, then a colon; wording
+/// after the last colon is not compared. FACTs after " | " are names and numbers that the message
+/// must contain.
+inline void expectStated(const std::string& message, const std::string& expected) {
+  std::size_t end = expected.find(" | ");
+  const std::string head = expected.substr(0, end) + ' ';
+  if (const std::size_t colon = head.rfind(": "); colon != std::string::npos) {
+    const std::string subject = head.substr(0, colon) + ": ";
+    const std::size_t at = message.find(subject);
+    EXPECT_TRUE(at == 0 ||
+                (at < message.size() && (message[at - 1] == ' ' || message[at - 1] == '/')))
+        << message << "\nexpected: " << subject;
+  }
+  while (end != std::string::npos) {
+    const std::size_t begin = end + 3;
+    end = expected.find(" | ", begin);
+    const std::string fact = expected.substr(begin, end - begin);
+    EXPECT_NE(message.find(fact), std::string::npos) << message << "\nexpected: " << fact;
+  }
+}
+
+/// Expects one line on standard error: an error that states `expected`.
+inline void expectErrorLine(const std::string& err, const std::string& expected) {
+  const std::string start = "fenestra: error: ";
+  EXPECT_TRUE(err.starts_with(start)) << err;
+  EXPECT_EQ(err.find('\n'), err.size() - 1) << err;
+  expectStated(err.substr(std::min(err.size(), start.size())), expected);
+}
+
+/// Command line that must fail with this exit status and error line.
 struct ExpectedError {
   std::string name;
   Arguments arguments;
   int status;
-  std::string text; ///< part of the error message
+  std::string text; ///< as for expectStated
 };
 
 /// Runs each command line. Expects its exit status, one line on standard error, nothing on standard
@@ -114,10 +143,7 @@ inline void expectErrors(const std::vector<ExpectedError>& errors,
     SCOPED_TRACE(error.name);
     const Outcome outcome = run(error.arguments, folder);
     EXPECT_EQ(outcome.status, error.status) << outcome.err;
-    EXPECT_TRUE(outcome.err.starts_with("fenestra: ")) << outcome.err;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_TRUE(outcome.err.ends_with('\n')) << outcome.err;
-    EXPECT_NE(outcome.err.find(error.text), std::string::npos) << outcome.err;
+    expectErrorLine(outcome.err, error.text);
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(listFiles(folder), before);
   }

@@ -69,7 +69,8 @@ TEST_F(VersionCommand, InstructionSetIsThatOfARender) {
   ::setenv("FENESTRA_INSTRUCTIONS", sets.back().c_str(), 1);
   EXPECT_EQ(readVersion()["instructions"], sets.back());
   ::setenv("FENESTRA_INSTRUCTIONS", "ABACUS", 1);
-  expectErrors({{"unknown set", {"--version"}, 2, "ABACUS"}}, folder.path());
+  expectErrors({{"unknown set", {"--version"}, 2, "FENESTRA_INSTRUCTIONS: | ABACUS"}},
+               folder.path());
   pinned ? ::setenv("FENESTRA_INSTRUCTIONS", before.c_str(), 1)
          : ::unsetenv("FENESTRA_INSTRUCTIONS");
 }
@@ -113,7 +114,9 @@ TEST_F(DescribeCommand, HelpOmitsUnsupportedOptions) {
   for (const auto& [command, option] :
        {Pair("serve", "--stats"), Pair("serve", "--checkpoint"), Pair("turntable", "--surface"),
         Pair("turntable", "--checkpoint")}) {
-    expectErrors({{option, {command, "volume.nrrd", option, "a.json"}, 2, option}}, folder.path());
+    expectErrors(
+        {{option, {command, "volume.nrrd", option, "a.json"}, 2, std::string(option) + ":"}},
+        folder.path());
     EXPECT_EQ(run({command, "--help"}, folder.path()).out.find(concat("\n  ", option, " ")),
               std::string::npos);
   }
@@ -122,9 +125,9 @@ TEST_F(DescribeCommand, HelpOmitsUnsupportedOptions) {
 }
 
 TEST_F(DescribeCommand, UnknownKindIsRejected) {
-  expectErrors({{"shell", {"describe", "csh"}, 2, "KIND: 'csh' is unknown"},
-                {"none", {"describe"}, 2, "KIND: missing"},
-                {"two", {"describe", "man", "bash"}, 2, "'bash': unexpected argument"}},
+  expectErrors({{"shell", {"describe", "csh"}, 2, "KIND:"},
+                {"none", {"describe"}, 2, "KIND:"},
+                {"two", {"describe", "man", "bash"}, 2, "'bash':"}},
                folder.path());
 }
 

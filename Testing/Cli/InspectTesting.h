@@ -63,7 +63,7 @@ protected:
     if (report["refused"].is_null())
       EXPECT_EQ(rendered.status, 0) << rendered.err;
     else
-      EXPECT_EQ(rendered.err, "fenestra: " + report["refused"].get<std::string>() + "\n");
+      EXPECT_EQ(rendered.err, "fenestra: error: " + report["refused"].get<std::string>() + "\n");
   }
 
   mutable std::string text; ///< plain output of the last inspection

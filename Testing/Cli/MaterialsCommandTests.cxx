@@ -176,7 +176,7 @@ TEST_F(MaterialsCommand, ContextOfAFileAppliesAroundAFocus) {
   }
   EXPECT_EQ(renderContrast("given.json").at("focusLightness"), 0.0);
   expectErrors({{"no focus", makeArguments({"--materials", "given.json"}), 3,
-                 "given.json: context: needs a focus; add --focus, or remove this member"}},
+                 "given.json: context: | --focus"}},
                folder.path());
 }
 
@@ -229,15 +229,13 @@ TEST_F(MaterialsCommand, ErrorsAreOneLine) {
            "--labelsmoothing: requires a focus or materials; add --focus or --materials"},
           refusal({"--materials", "none"}, 2, "--segmentation: used only with"),
           refusal({"--material", "A: g=0"}, 2, "--material: requires --materials"),
-          refusal({"--materials", "liver"}, 3,
-                  "liver: no such file or preset; --materials takes none, "
-                  "auto, library, or a file"),
+          refusal({"--materials", "liver"}, 3, "liver: | none, auto, library"),
           refusal({"--materials", "broken.json"}, 3,
                   "broken.json: materials.a: unknown key \"colors\""),
-          change("A", "must give a segment and what to change"),
-          change("A: colors=#ffffff", "--material A: unknown key \"colors\""),
-          change("A: color=red", "--material A: color"),
-          change("C: color=#ffffff", "has no segment \"C\"; it has A (Bone, left), B (Void)"),
+          change("A", "material A:"),
+          change("A: colors=#ffffff", "material A: | \"colors\""),
+          change("A: color=red", "material A: color:"),
+          change("C: color=#ffffff", "segments.seg.nrrd: | \"C\" | A (Bone, left), B (Void)"),
       },
       folder.path());
 }

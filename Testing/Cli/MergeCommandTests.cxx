@@ -110,14 +110,14 @@ TEST_F(MergeCommand, ErrorNamesShardsThatDoNotBelongTogether) {
     std::filesystem::rename(folder / "kept.film", folder / shards[1]);
   };
   std::vector<ExpectedError> refusals = {
-      {"missing", {shards[0], shards[2]}, 2, "PART: of 3 shards, number 2 is missing"},
-      {"doubled", {shards[0], shards[1], shards[2], "copy.film"}, 2, "is shard 2/3, as is "},
-      {"of another count", {shards[0], foreign, shards[2]}, 2, foreign + ": is shard 1/2"},
-      {"truncated", {shards[0], "cut.film", shards[2]}, 3, "cut.film: is a damaged checkpoint"},
-      {"no checkpoint", {shards[0], "volume.nrrd", shards[2]}, 3, "is not a checkpoint"},
-      {"absent", {shards[0], "none.film", shards[2]}, 3, "none.film: no such file"},
-      {"nothing", {}, 2, "PART: missing"},
-      {"option of render", {shards[0], "--seed", "3"}, 2, "--seed: unknown option"},
+      {"missing", {shards[0], shards[2]}, 2, "PART: | 3 shards | number 2"},
+      {"doubled", {shards[0], shards[1], shards[2], "copy.film"}, 2, "copy.film: | 2/3"},
+      {"of another count", {shards[0], foreign, shards[2]}, 2, foreign + ": | 1/2"},
+      {"truncated", {shards[0], "cut.film", shards[2]}, 3, "cut.film:"},
+      {"no checkpoint", {shards[0], "volume.nrrd", shards[2]}, 3, "volume.nrrd:"},
+      {"absent", {shards[0], "none.film", shards[2]}, 3, "none.film:"},
+      {"nothing", {}, 2, "PART:"},
+      {"option of render", {shards[0], "--seed", "3"}, 2, "--seed:"},
       {"shard as output", {shards[0], shards[1], shards[2], "--output", "1of3.film"}, 2, ""},
   };
   const std::pair<const char*, Arguments> others[] = {{"seed.film", {"--seed", "4"}},
@@ -125,10 +125,7 @@ TEST_F(MergeCommand, ErrorNamesShardsThatDoNotBelongTogether) {
   for (const auto& [name, more] : others) {
     renderOther(name, more);
     refusals.push_back(
-        {name,
-         {shards[0], name, shards[2]},
-         2,
-         std::string(name) + ": belongs to another image than 1of3.film: " + more[0]});
+        {name, {shards[0], name, shards[2]}, 2, std::string(name) + ": | 1of3.film | " + more[0]});
   }
   for (ExpectedError& refusal : refusals)
     refusal.arguments.insert(refusal.arguments.begin(), "merge");
@@ -168,17 +165,17 @@ TEST_F(MergeCommand, ShardsRejectOptionsOfTheCompleteImage) {
     return arguments;
   };
   expectErrors(
-      {refusal("no checkpoint", {}, "--shard: requires --checkpoint"),
-       refusal("noise", withCheckpoint({"--noise", "0.1"}), "use --samples N"),
-       refusal("seconds", withCheckpoint({"--seconds", "1"}), "use --samples N"),
-       refusal("output", withCheckpoint({"--output", "a.png"}), "give it to fenestra merge"),
-       refusal("stats", withCheckpoint({"--stats", "a.json"}), "give it to fenestra merge")},
+      {refusal("no checkpoint", {}, "--shard:"),
+       refusal("noise", withCheckpoint({"--noise", "0.1"}), "--noise: | --samples"),
+       refusal("seconds", withCheckpoint({"--seconds", "1"}), "--seconds: | --samples"),
+       refusal("output", withCheckpoint({"--output", "a.png"}), "--output: | fenestra merge"),
+       refusal("stats", withCheckpoint({"--stats", "a.json"}), "--stats: | fenestra merge")},
       folder.path());
   for (const char* text : {"0/3", "4/3", "1", "1/0", "1/2x", "-1/2", "1/20000"})
     expectErrors({{text,
                    {"volume.nrrd", std::string("--shard=") + text, "--checkpoint", "a.film"},
                    2,
-                   "--shard: expected K/N"}},
+                   "--shard:"}},
                  folder.path());
 }
 

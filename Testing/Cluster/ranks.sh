@@ -125,7 +125,7 @@ timeout 120 mpirun --oversubscribe --bind-to none -n 1 -x FENESTRA_INSTRUCTIONS=
   fail "different instruction sets end with status $status: $(cat out)"
 status=0
 run_ranks 2 "$program_mpi" volume.nrrd --samples none >out 2>&1 || status=$?
-{ [ "$status" -eq 2 ] && [ "$(grep -c '^fenestra: ' out)" -eq 1 ]; } ||
+{ [ "$status" -eq 2 ] && [ "$(grep -c '^fenestra: error: ' out)" -eq 1 ]; } ||
   fail "a usage error ends with status $status: $(cat out)"
 
 echo "$errors errors"

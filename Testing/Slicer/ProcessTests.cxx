@@ -139,7 +139,7 @@ TEST_F(SlicerProcess, FailureHasTheRenderersMessage) {
   EXPECT_TRUE(recorder.ended[0].outcome.message.startsWith("missing.nrrd: "))
       << recorder.ended[0].outcome.message.toStdString();
   EXPECT_TRUE(recorder.ended[1].outcome.message.startsWith("--samples: "));
-  EXPECT_TRUE(recorder.ended[1].outcome.details.startsWith("fenestra: --samples: "));
+  EXPECT_TRUE(recorder.ended[1].outcome.details.startsWith("fenestra: error: --samples: "));
 }
 
 TEST_F(SlicerProcess, MissingRendererFailsEachJobOnce) {

@@ -93,10 +93,7 @@ inline void expectControlPoints(const ClippingSurface& surface, const SurfaceOpt
   EXPECT_LE(mismatch.mean, mismatch.max * (1.0 + 1e-12));
   EXPECT_LE(mismatch.p95, mismatch.max);
   EXPECT_TRUE(std::isfinite(mismatch.max));
-  const std::string warning =
-      "the focus covers hardly a pixel, so the clipping surface is flat; use "
-      "a larger --size, or a view that frames the focus";
-  EXPECT_EQ(std::ranges::count(surface.warnings, warning),
+  EXPECT_EQ(std::ranges::count(surface.warnings, ErrorCode::tinyFocus, &Message::code),
             surface.controlPoints.size() < std::min<std::size_t>(3, requested) ? 1 : 0);
 }
 

@@ -148,7 +148,7 @@ TEST(UnusualVoxels, NoFiniteVoxelIsErrorOneIsConstantVolume) {
   const TemporaryFolder folder;
   const double nan = std::nan("");
   writeFile(folder / "none.nrrd", std::vector<double>(64, nan), cube);
-  expectRefused(folder / "none.nrrd", "has no finite voxel",
+  expectRefused(folder / "none.nrrd", "non-finite-voxels",
                 [&] { renderFile(folder / "none.nrrd", {}); });
   std::vector<double> one(64, nan);
   one[63] = -1000.0;
@@ -184,7 +184,7 @@ TEST(ExtinctionLimit, OpticalDepthAboveTenMillionIsError) {
   const double limit = 1e7 / (4.0 * std::sqrt(3.0)); // across the diagonal of 4 mm
   for (const double extinction : {1.001 * limit, 1e8, 1e30}) {
     const auto transferFile = folder.write("over.json", makeDenseTransfer(extinction));
-    expectRefused(transferFile, "extinction: reaches",
+    expectRefused(transferFile, "excessive-extinction: extinction",
                   [&] { renderFile(folder / "v.nrrd", transferFile); });
   }
   const auto transferFile = folder.write("at.json", makeDenseTransfer(0.999 * limit));
@@ -195,7 +195,8 @@ TEST(ExtinctionLimit, OpticalDepthAboveTenMillionIsError) {
   request.input = folder / "v.nrrd";
   request.transfer = transferFile;
   request.density = 1.01;
-  expectRefused(transferFile, "extinction: reaches", [&] { PreparedScene scene(request); });
+  expectRefused(transferFile, "excessive-extinction: extinction",
+                [&] { PreparedScene scene(request); });
 }
 
 TEST(ExtinctionLimit, ReflectanceEqualsChandrasekharsValue) {

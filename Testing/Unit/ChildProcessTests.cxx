@@ -48,7 +48,7 @@ TEST(ChildProcess, ReportsHowItEnded) {
   const std::vector<std::pair<std::string, int>> cases = {
       {"Prints", 0}, {"Fails", 1}, {"Crashes", 128 + SIGKILL}, {"InheritsNoFiles", 0}};
   for (const auto& [testCase, status] : cases) {
-    ChildProcess child(makeArguments(testCase));
+    ChildProcess child(makeArguments(testCase), 4);
     waitFor(child);
     EXPECT_EQ(child.status(), status) << testCase << child.errors();
     if (testCase == "Prints") {
@@ -63,11 +63,11 @@ TEST(ChildProcess, ReportsHowItEnded) {
 
 TEST(ChildProcess, EndsOnASignalAndWhenDestroyed) {
   const Stopwatch watch;
-  ChildProcess child(makeArguments("Sleeps"));
+  ChildProcess child(makeArguments("Sleeps"), 4);
   child.send(SIGTERM);
   waitFor(child);
   EXPECT_EQ(child.status(), 128 + SIGTERM);
-  { const ChildProcess other(makeArguments("Sleeps")); }
+  { const ChildProcess other(makeArguments("Sleeps"), 4); }
   EXPECT_LT(watch.seconds(), 30.0);
 }
 

@@ -1,8 +1,8 @@
 // Clip weights, visible intervals and bounds are consistent; surfaces agree with the focus; errors.
 
 #include "ClippingTesting.h"
+#include "ErrorChecks.h"
 #include "RunSettings.h"
-#include "base/Error.h"
 #include "clip/surface/ClippingSurface.h"
 #include "metrics/BoundaryMetrics.h"
 
@@ -285,8 +285,7 @@ TEST(ClippingSurface, WarnsOfAFocusOutsideTheImage) {
   pose.scale = 2.0;
   const ClippingSurface surface = model.surface({pose, 32, 32});
   ASSERT_EQ(surface.warnings.size(), 1U);
-  EXPECT_EQ(surface.warnings[0],
-            "focus A is outside the image; change --view, --target or --scale");
+  expectMessage(surface.warnings[0], "focus-outside-image: focus A");
 }
 
 TEST(ClippingSurface, FocusThatNoRayHitsIsAnInputError) {
@@ -298,13 +297,8 @@ TEST(ClippingSurface, FocusThatNoRayHitsIsAnInputError) {
   outside.grid = Grid(outside.grid.size, shifted);
   Mask emptyMask = makeMask(model.volume, [](const Vec3&) { return false; });
   for (const Mask& mask : {outside, emptyMask})
-    try {
-      buildClippingSurface(camera, model.volume, mask, {});
-      ADD_FAILURE();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::input);
-      EXPECT_EQ(std::string(error.what()).substr(0, 8), "focus A:");
-    }
+    catchError(ErrorKind::input, "hidden-focus: focus A",
+               [&] { buildClippingSurface(camera, model.volume, mask, {}); });
 }
 
 TEST(ClippingSurface, OptionsOutOfRangeAreUsageErrors) {

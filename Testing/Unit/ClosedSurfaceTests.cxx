@@ -234,7 +234,7 @@ TEST(ClosedSurface, SurfaceIsClippedToTheVolume) {
   const Path path = writeSegments(folder, {makeBox(Vec3(-50, 2.5, 2.5), Vec3(50, 4.5, 4.5))});
   EXPECT_EQ(readSegmentation(path, &grid).makeFocusMask({"id0"}, grid).count, 10 * 2 * 2);
   const Path outside = writeSegments(folder, {makeBox(Vec3(50, 50, 50), Vec3(60, 60, 60))});
-  fenestra::expectRefused(outside, "the focus has no voxel",
+  fenestra::expectRefused(outside, "empty-focus",
                           [&] { readSegmentation(outside, &grid).makeFocusMask({"id0"}, grid); });
 }
 
@@ -273,24 +273,25 @@ TEST(ClosedSurface, RejectsOpenSurfaces) {
   Shape open = makeBox(Vec3(0, 0, 0), Vec3(5, 5, 5));
   open.triangles.pop_back();
   const Path path = writeSegments(folder, {open});
-  expectRefused(path, path, "segment \"ségment 0\": has a surface with holes");
+  expectRefused(path, path, "invalid-file | \"ségment 0\"");
   const Path empty = writeSegments(folder, {{}});
-  expectRefused(empty, empty, "has surfaces without points");
+  expectRefused(empty, empty, "invalid-file");
   std::string lines = makeSurfaceXml({}, "a", "b", Encoding::ascii);
   const std::string none = "NumberOfLines=\"0\"";
   lines.replace(lines.find(none), none.size(), "NumberOfLines=\"4\"");
   folder.write("lines.vtp", lines);
-  expectRefused(folder / "lines.vtp", writeBlocks(folder, {"lines.vtp"}), "is planar contours");
+  expectRefused(folder / "lines.vtp", writeBlocks(folder, {"lines.vtp"}),
+                "invalid-field: Segmentation_MasterRepresentation");
 }
 
 TEST(ClosedSurface, RejectsFilesOutsideItsFolder) {
   const TemporaryFolder folder;
   for (const char* name : {"../other.vtp", "a/../../other.vtp", "/etc/passwd", ""}) {
     const Path path = writeBlocks(folder, {name});
-    expectRefused(path, path, "is not in the folder of the .vtm");
+    expectRefused(path, path, "invalid-field: DataSet");
   }
   const Path path = writeBlocks(folder, {"absent.vtp"});
-  expectRefused(folder / "absent.vtp", path, "no such file");
+  expectRefused(folder / "absent.vtp", path, "missing-file");
 }
 
 TEST(ClosedSurface, DamagedBytesAreReadOrRejected) {
@@ -348,7 +349,8 @@ TEST(ClosedSurface, RejectsArraysThatExpandBeyondTheLimit) {
   for (const char* arrayName :
        {"Points", "connectivity", "offsets", "Segment_Name", "Segment_Color"}) {
     folder.write("large.vtp", replaceArray(arrayName));
-    expectRefused(folder / "large.vtp", writeBlocks(folder, {"large.vtp"}), "more than 1 GiB");
+    expectRefused(folder / "large.vtp", writeBlocks(folder, {"large.vtp"}),
+                  "limit-exceeded | 1 GiB");
   }
   folder.write("unused.vtp",
                replaceArray("Segmentation_MasterRepresentation")); // is never decompressed
@@ -362,7 +364,7 @@ TEST(ClosedSurface, RejectsRealContours) {
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
   for (const std::string name : {"TinyPatientStructureSet", "EclipseProstate_Structures"})
     expectRefused(folder / (name + ".seg") / (name + ".seg_0.vtp"), folder / (name + ".seg.vtm"),
-                  "is planar contours, not a closed surface");
+                  "invalid-field: Segmentation_MasterRepresentation");
 }
 
 } // namespace

@@ -171,9 +171,9 @@ TEST(DicomSeries, DecodesJpeg2000AndRejectsDamagedStreams) {
   wider[wider.find("\xff\x4f\xff\x51") + 8] = 1;
   folder.write("wider.dcm", wider);
   const Path truncated = folder.write("half.dcm", bytes.substr(0, bytes.size() - 40));
-  fenestra::expectRefused(truncated, "PixelData: cannot be decoded",
+  fenestra::expectRefused(truncated, "damaged-file: PixelData",
                           [&] { readDicomVolume({truncated}, "x"); });
-  fenestra::expectRefused(folder / "wider.dcm", "PixelData: cannot be decoded",
+  fenestra::expectRefused(folder / "wider.dcm", "damaged-file: PixelData",
                           [&] { readDicomVolume({folder / "wider.dcm"}, "x"); });
 }
 
@@ -211,12 +211,6 @@ TEST(DicomSeries, ReadsASingleSlice) {
   EXPECT_EQ(volume.name, "scene");
 }
 
-template <typename Call>
-void expectRefusedFolder(const Path& folder, const std::vector<std::string>& texts, Call&& call) {
-  for (const std::string& text : texts)
-    fenestra::expectRefused(folder, text, call);
-}
-
 TEST(DicomSeries, SelectorChoosesAmongSeries) {
   const TemporaryFolder folder;
   writeStack(folder, {}, 2, 1);
@@ -234,14 +228,13 @@ TEST(DicomSeries, SelectorChoosesAmongSeries) {
   EXPECT_EQ(choose("1.2.4").files.size(), 3u);
   EXPECT_EQ(choose("8").files.size(), 4u);
   EXPECT_EQ(choose("head").files.size(), 2u);
-  expectRefusedFolder(folder.path(),
-                      {"has 3 DICOM series: number 7 \"head\" CT 1.2.3 (2 files); number 8",
-                       "choose one with --volume"},
-                      [&] { choose(std::nullopt); });
-  expectRefusedFolder(folder.path(), {"--volume \"neck\" matches several: number 8", "by its uid"},
-                      [&] { choose("neck"); });
-  expectRefusedFolder(folder.path(), {"--volume \"foot\" matches no DICOM series"},
-                      [&] { choose("foot"); });
+  fenestra::expectRefused(
+      folder.path(), "ambiguous-volume | 3 DICOM | number 7 \"head\" CT 1.2.3 (2 files); number 8",
+      [&] { choose(std::nullopt); });
+  fenestra::expectRefused(folder.path(), "ambiguous-name | \"neck\" | number 8",
+                          [&] { choose("neck"); });
+  fenestra::expectRefused(folder.path(), "unknown-name | \"foot\" | number 8",
+                          [&] { choose("foot"); });
 }
 
 TEST(DicomSeries, SearchesSubfoldersOfAFolderWithoutFiles) {
@@ -252,12 +245,12 @@ TEST(DicomSeries, SearchesSubfoldersOfAFolderWithoutFiles) {
   write(folder / "b/2.dcm", {.position = {0, 0, 4}});
   EXPECT_EQ(readSingleSeries(folder.path()).grid.size.z(), 2);
   folder.write("readme", "");
-  fenestra::expectRefused(folder.path(), "has no DICOM image series",
+  fenestra::expectRefused(folder.path(), "unsupported-file",
                           [&] { findDicomSeries(folder.path()); });
 }
 
-void expectRefused(const Path& subject, const Path& folder, const std::string& text) {
-  fenestra::expectRefused(subject, text, [&] { readSingleSeries(folder); });
+void expectRefused(const Path& subject, const Path& folder, const std::string& expected) {
+  fenestra::expectRefused(subject, expected, [&] { readSingleSeries(folder); });
 }
 
 /// Writes slices at these depths, in files 0.dcm, 1.dcm, ...
@@ -269,14 +262,15 @@ void writeDepths(const TemporaryFolder& folder, const std::vector<double>& depth
 TEST(DicomSeries, RejectsMissingAndRepeatedSlices) {
   const TemporaryFolder gap, repeated, drift, sideways;
   writeDepths(gap, {0, 2, 4, 8, 10});
-  expectRefused(gap / "2.dcm", gap.path(), "is 4 mm from 3.dcm, but the median gap is 2 mm");
+  expectRefused(gap / "2.dcm", gap.path(),
+                "invalid-field: ImagePositionPatient | 4 mm | 3.dcm | 2 mm");
   writeDepths(repeated, {0, 2, 4, 2});
-  expectRefused(repeated / "1.dcm", repeated.path(), "equals that of 3.dcm");
+  expectRefused(repeated / "1.dcm", repeated.path(), "invalid-field: ImagePositionPatient | 3.dcm");
   writeDepths(drift, {0, 2, 4, 6, 8.9, 11.8, 14.7, 17.6});
-  expectRefused(drift / "3.dcm", drift.path(), "off even spacing");
+  expectRefused(drift / "3.dcm", drift.path(), "invalid-field: ImagePositionPatient");
   for (int i = 0; i < 3; ++i)
     write(sideways / (std::to_string(i) + ".dcm"), {.position = Vec3(i == 1 ? 0.6 : 0, 0, i)});
-  expectRefused(sideways / "1.dcm", sideways.path(), "off even spacing");
+  expectRefused(sideways / "1.dcm", sideways.path(), "invalid-field: ImagePositionPatient");
 }
 
 TEST(DicomSeries, WarnsOfUnevenSpacing) {
@@ -284,8 +278,8 @@ TEST(DicomSeries, WarnsOfUnevenSpacing) {
   writeDepths(folder, {0, 2.1, 4, 6});
   const Volume volume = readSingleSeries(folder.path());
   ASSERT_EQ(volume.warnings.size(), 1u);
-  EXPECT_EQ(volume.warnings[0], folder.path().string() + ": slices are up to 0.1 mm off even "
-                                                         "spacing; 2 mm steps are used");
+  EXPECT_EQ(volume.warnings[0].subject, folder.path());
+  expectMessage(volume.warnings[0], "assumed-geometry | 0.1 mm | 2 mm");
   EXPECT_NEAR(volume.grid.spacing().z(), 2.0, 1e-12);
   writeDepths(even, {0, 2.01, 4, 6});
   EXPECT_TRUE(readSingleSeries(even.path()).warnings.empty());
@@ -296,10 +290,10 @@ TEST(DicomSeries, RejectsSlicesOfDifferentGeometry) {
   writeDepths(rotated, {0, 1});
   write(rotated / "2.dcm", {.position = {0, 0, 2}, .axes = makeObliqueAxes()});
   expectRefused(rotated / "2.dcm", rotated.path(),
-                "ImageOrientationPatient: differs from that of 0");
+                "invalid-field: ImageOrientationPatient | 0.dcm");
   writeDepths(spaced, {0, 1});
   write(spaced / "2.dcm", {.position = {0, 0, 2}, .rowSpacing = 2.1});
-  expectRefused(spaced / "2.dcm", spaced.path(), "PixelSpacing: differs");
+  expectRefused(spaced / "2.dcm", spaced.path(), "invalid-field: PixelSpacing");
 }
 
 /// Overwrites the start of an element's value in a file's bytes. The element has no explicit VR.
@@ -313,7 +307,7 @@ TEST(DicomSeries, RejectsFilesThatAreNotGraySlices) {
   const TemporaryFolder folder;
   const Path colored = write(folder / "rgb.dcm", {.components = 3});
   const auto read = [](const Path& file) { return [file] { readDicomVolume({file}, "x"); }; };
-  fenestra::expectRefused(colored, "with one sample per voxel", read(colored));
+  fenestra::expectRefused(colored, "invalid-field: PhotometricInterpretation", read(colored));
   const std::string bytes = readBytes(write(folder / "a.dcm", {}));
   const auto expect = [&](const std::string& tag, const std::string& value, const char* text) {
     std::string changed = bytes;
@@ -322,20 +316,19 @@ TEST(DicomSeries, RejectsFilesThatAreNotGraySlices) {
     fenestra::expectRefused(file, text, read(file));
   };
   using namespace std::string_literals;
-  expect("\x28\0\x10\0"s, "\xff\xff", "PixelData: is shorter than Rows");
-  expect("\x28\0\x10\0"s, "\0\0"s, "Rows or Columns: is missing");
-  expect("\x28\0\x30\0"s, "0\\0", "PixelSpacing: must be above 0 mm");
-  expect("\x28\0\x30\0"s, "-1\\1", "PixelSpacing: must be above 0 mm");
-  expect("\x28\0\x53\x10"s, "nan", "RescaleSlope or RescaleIntercept: is not one finite number");
-  expect("\x28\0\x52\x10"s, "x", "RescaleSlope or RescaleIntercept: is not one finite number");
-  expect("\x20\0\x32\0"s, "x", "is missing, so the slice cannot be placed");
-  expect("\x20\0\x37\0"s, "1\\1", "must be two orthogonal directions");
+  expect("\x28\0\x10\0"s, "\xff\xff", "invalid-field: PixelData");
+  expect("\x28\0\x10\0"s, "\0\0"s, "invalid-field: Rows or Columns");
+  expect("\x28\0\x30\0"s, "0\\0", "invalid-field: PixelSpacing");
+  expect("\x28\0\x30\0"s, "-1\\1", "invalid-field: PixelSpacing");
+  expect("\x28\0\x53\x10"s, "nan", "invalid-field: RescaleSlope or RescaleIntercept");
+  expect("\x28\0\x52\x10"s, "x", "invalid-field: RescaleSlope or RescaleIntercept");
+  expect("\x20\0\x32\0"s, "x", "invalid-field: ImagePositionPatient or ImageOrientationPatient");
+  expect("\x20\0\x37\0"s, "1\\1", "invalid-field: ImageOrientationPatient");
   const Path truncated = folder.write("half.dcm", bytes.substr(0, bytes.size() - 10));
-  fenestra::expectRefused(truncated, "is damaged, truncated or deflated", read(truncated));
+  fenestra::expectRefused(truncated, "damaged-file", read(truncated));
   const Path none = folder.write("none.dcm", "what");
-  fenestra::expectRefused(none, "is not a DICOM file", read(none));
-  fenestra::expectRefused(folder / "absent",
-                          "folder cannot be read: No such file or directory; check its name",
+  fenestra::expectRefused(none, "unsupported-file", read(none));
+  fenestra::expectRefused(folder / "absent", "unreadable-file",
                           [&] { findDicomSeries(folder / "absent"); });
 }
 
@@ -428,7 +421,7 @@ TEST(DicomSeries, StreamThatCrashesTheDecoderIsReadOrRejected) {
   try {
     EXPECT_EQ(readDicomVolume({damaged}, "CT").grid.size, Size3(32, 32, 1));
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("PixelData: cannot be decoded"), std::string::npos);
+    expectMessage(error.message(), "damaged-file: PixelData");
   }
 }
 

@@ -43,7 +43,7 @@ TEST(Digest, NeverChanges) { // checkpoints and manifests of earlier runs contai
 TEST(Digest, MissingFileIsRejected) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "none";
-  expectRefused(path, "cannot be read", [&] { computeDigest(path); });
+  expectRefused(path, "unreadable-file", [&] { computeDigest(path); });
 }
 
 } // namespace

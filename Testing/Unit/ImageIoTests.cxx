@@ -154,7 +154,7 @@ TEST_F(NrrdFiles, ForeignDepthFileIsNotReplaced) {
   writeContent(path("view-Z.nrrd"), depth.erase(tag, depth.find('\n', tag) + 1 - tag));
   save(image, "view.nrrd"); // same grid: accepted as a file of an earlier version
   writeContent(path("view-Z.nrrd"), "foreign content");
-  EXPECT_EQ(catchErrorKind([&] { save(image, "view.nrrd"); }, "view-Z.nrrd"), ErrorKind::usage);
+  catchError(ErrorKind::request, "foreign-output: view-Z.nrrd", [&] { save(image, "view.nrrd"); });
   EXPECT_EQ(readContent(path("view-Z.nrrd")), "foreign content");
 }
 
@@ -171,7 +171,7 @@ TEST_F(DisplayFiles, DefaultNameReplacesOnlyFilesWrittenByFenestra) {
       save(makeTestImage(), "a.png");
       declare();
     } else {
-      EXPECT_EQ(catchErrorKind(declare, "a.png"), ErrorKind::usage);
+      catchError(ErrorKind::request, "foreign-output: a.png", declare);
     }
   }
 }
@@ -244,16 +244,16 @@ TEST_F(ImageFiles, UnknownFormatAndMissingColorAreRejected) {
   const auto write = [](const Image& image, const fs::path& file) {
     return [=] { writeImage(image, {}, file); };
   };
-  EXPECT_EQ(catchErrorKind(write(makeTestImage(), path("a.jpg")), ".exr, .nrrd, .png or .tif"),
-            ErrorKind::usage);
+  catchError(ErrorKind::request, "unsupported-file | .exr, .nrrd, .png or .tif",
+             write(makeTestImage(), path("a.jpg")));
   Outputs outputs;
-  EXPECT_EQ(catchErrorKind([&] { declareImage(path("a"), outputs); }, ".exr, .nrrd, .png or .tif"),
-            ErrorKind::usage);
+  catchError(ErrorKind::request, "unsupported-file | .exr, .nrrd, .png or .tif",
+             [&] { declareImage(path("a"), outputs); });
   declareImage(path("a.png"), outputs);
   Image depth = makeTestImage();
   depth.channels.erase("G");
-  EXPECT_EQ(catchErrorKind(write(depth, path("a.png")), "a.png"), ErrorKind::usage);
-  EXPECT_EQ(catchErrorKind(write(depth, path("a.nrrd")), "a.nrrd"), ErrorKind::usage);
+  catchError(ErrorKind::request, "unsupported-file: a.png", write(depth, path("a.png")));
+  catchError(ErrorKind::request, "unsupported-file: a.nrrd", write(depth, path("a.nrrd")));
   EXPECT_EQ(fileCount(), 0u);
 }
 
@@ -268,14 +268,14 @@ TEST_F(ImageFiles, FailedWriteKeepsThePreviousFile) {
     for (const std::size_t limit : {std::size_t{0}, before.size() / 2, before.size() - 1}) {
       const FullDisk full(limit);
       ::testing::internal::CaptureStderr();
-      EXPECT_EQ(catchErrorKind([&] { writeImage(image, {}, path(name)); }, name),
-                ErrorKind::output);
+      catchError(ErrorKind::output, "unwritable-file: " + name,
+                 [&] { writeImage(image, {}, path(name)); });
       EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << name << " " << limit;
     }
     EXPECT_EQ(fileCount(), count) << name;
     EXPECT_EQ(readContent(path(name)), before) << name;
-    EXPECT_EQ(catchErrorKind([&] { writeImage(image, {}, path("missing/" + name)); }, name),
-              ErrorKind::output);
+    catchError(ErrorKind::output, "unwritable-file: " + name,
+               [&] { writeImage(image, {}, path("missing/" + name)); });
   }
 }
 

@@ -1,14 +1,13 @@
 #pragma once
 // Images to write, and a folder for them.
 
+#include "ErrorChecks.h"
 #include "WriteResults.h"
-#include "base/Error.h"
 #include "files/images/ImageReader.h"
 
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <functional>
 #include <sstream>
 
 #include <unistd.h>
@@ -26,21 +25,6 @@ inline std::string readContent(const fs::path& path) {
 inline void writeContent(const fs::path& path, const std::string& content) {
   fs::remove(path); // overwriting makes some file systems flush to the disk
   std::ofstream(path, std::ios::binary) << content;
-}
-
-/// Kind of the Error thrown by `action`; expects a message of one line that contains `subject`.
-inline ErrorKind catchErrorKind(const std::function<void()>& action,
-                                const std::string& subject = "") {
-  try {
-    action();
-  } catch (const Error& error) {
-    const std::string line = error.what();
-    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
-    EXPECT_NE(line.find(subject), std::string::npos) << line;
-    return error.kind();
-  }
-  ADD_FAILURE() << "no error was thrown for " << subject;
-  return {};
 }
 
 /// Image with a gradient in every channel of a render.

@@ -39,23 +39,22 @@ TEST_F(MedicalHeaders, BadGeometryIsRefused) {
   for (const char* vector :
        {"(0,0,1e200)", "(0,0,2e9)", "(0,0,1e-10)", "(0,0,1e999)", "(0,0,inf)", "(0,0,x)", "(0,0,1"})
     refuse(writeNrrd(space + "space directions: (1,0,0) (0,1,0) " + vector + "\n"),
-           "space directions: each must be a vector of 1e-9 to 1e9 mm");
+           "invalid-field: space directions");
   refuse(writeNrrd(space + "space directions: (1,0,0) (0,1,0) none\n"),
-         "space directions: has 2 vectors");
-  refuse(writeNrrd("axis mins: 10 0 0\naxis maxs: 17 7 21\n"), "axis mins: requires spacings");
-  refuse(writeNrrd("axismaxs: 17 7 21\n"), "axis maxs: requires spacings");
+         "invalid-field: space directions");
+  refuse(writeNrrd("axis mins: 10 0 0\naxis maxs: 17 7 21\n"), "invalid-field: axis mins");
+  refuse(writeNrrd("axismaxs: 17 7 21\n"), "invalid-field: axis maxs");
   EXPECT_EQ(readVolume(writeNrrd("spacings: 1 2 3\naxis mins: 10 0 0\n")).grid.spacing(),
             Vec3(1, 2, 3));
-  refuse(writeNrrd("spacings: 1 1 1e10\n"), "must be from 1e-9 to 1e9 mm");
-  refuse(writeNrrd(space + "spacings: 1 1 3\n"), "spacings: cannot be combined with a space");
+  refuse(writeNrrd("spacings: 1 1 1e10\n"), "invalid-field: spacing");
+  refuse(writeNrrd(space + "spacings: 1 1 3\n"), "invalid-field: spacings");
 }
 
 TEST_F(MedicalHeaders, MissingSpacingWarnsAndDefaultsToOneMillimeter) {
   for (const std::string& lines : {std::string(), space + "space directions: none none none\n"}) {
     const Volume volume = readVolume(writeNrrd(lines));
     ASSERT_EQ(volume.warnings.size(), 1u) << lines;
-    EXPECT_NE(volume.warnings[0].find("has no spacing; 1 mm voxels are assumed"),
-              std::string::npos);
+    expectMessage(volume.warnings[0], "assumed-geometry | 1 mm");
     EXPECT_EQ(volume.grid.spacing(), Vec3(1, 1, 1));
   }
   EXPECT_TRUE(readVolume(writeNrrd(space + unitDirections)).warnings.empty());
@@ -69,22 +68,20 @@ TEST_F(MedicalHeaders, UnitsOtherThanMillimetersAreRefused) {
   const std::string placed = space + unitDirections;
   for (const char* unit : {"m", "cm", "Inch", "um"})
     refuse(writeNrrd(placed + "space units: \"" + unit + "\" \"mm\" \"mm\"\n"),
-           "space units: \"" + std::string(unit) + "\" is not supported");
-  refuse(writeNrrd("spacings: 1 1 1\nunits: \"cm\" \"cm\" \"cm\"\n"),
-         "units: \"cm\" is not supported");
+           "invalid-field: space units | " + std::string(unit));
+  refuse(writeNrrd("spacings: 1 1 1\nunits: \"cm\" \"cm\" \"cm\"\n"), "invalid-field: units");
   for (const char* units : {R"("mm" "mm" "mm")", R"("" "" "")", R"("MM" "millimeters" "?")"})
     EXPECT_EQ(readVolume(writeNrrd(placed + "space units: " + units + "\n")).maximum, 'x') << units;
-  refuse(writeMeta("DimSize = 3 4 2\nDistanceUnits = m\n"),
-         "DistanceUnits: \"m\" is not supported");
+  refuse(writeMeta("DimSize = 3 4 2\nDistanceUnits = m\n"), "invalid-field: DistanceUnits");
   EXPECT_EQ(readVolume(writeMeta("DimSize = 3 4 2\nDistanceUnits = mm\n")).maximum, 'x');
 }
 
 TEST_F(MedicalHeaders, UnsupportedRescalingIsRefused) {
   const std::string size = "DimSize = 3 4 2\n";
   refuse(writeMeta(size + "ElementToIntensityFunctionSlope = 2\n"),
-         "ElementToIntensityFunctionSlope: only 1 is supported");
+         "invalid-field: ElementToIntensityFunctionSlope");
   refuse(writeMeta(size + "ElementToIntensityFunctionOffset = -1024\n"),
-         "ElementToIntensityFunctionOffset: only 0 is supported");
+         "invalid-field: ElementToIntensityFunctionOffset");
   EXPECT_EQ(readVolume(writeMeta(size + "ElementToIntensityFunctionSlope = 1.0\n"
                                         "ElementToIntensityFunctionOffset = 0\n"))
                 .maximum,
@@ -94,7 +91,7 @@ TEST_F(MedicalHeaders, UnsupportedRescalingIsRefused) {
     std::string bytes = readBytes(folder / "v.nii");
     bytes.replace(112, 4, rawBytes(std::vector<float>{2.0f}));
     bytes.replace(at, 4, rawBytes(std::vector<float>{std::numeric_limits<float>::infinity()}));
-    refuse(folder.write("inf.nii", bytes), "scl_slope or scl_inter: is not finite");
+    refuse(folder.write("inf.nii", bytes), "invalid-field: scl_slope or scl_inter");
   }
 }
 
@@ -113,23 +110,23 @@ TEST_F(MedicalHeaders, ByteSkipInCompressedDataIsLimited) {
   EXPECT_EQ(readVolume(writeNrrd("byte skip: 3\n", "gzip", stream)).minimum, 'x');
   for (const char* bytes : {"1073741824", "1048577", "99999999999999999999", "-1"})
     refuse(writeNrrd(std::string("byte skip: ") + bytes + "\n", "gzip", stream),
-           "byte skip: must be from 0 to 1048576 in compressed data");
+           "invalid-field: byte skip");
 }
 
 TEST_F(MedicalHeaders, ErrorNamesFieldAndCause) {
   for (const char* encoding : {"bzip2", "bz2", "zrl"})
     refuse(writeNrrd("spacings: 1 1 1\n", encoding),
-           "encoding: \"" + std::string(encoding) + "\" is not supported; use raw or gzip");
+           "invalid-field: encoding | " + std::string(encoding));
   const std::string head = "NRRD0004\ntype: unsigned char\nencoding: raw\n";
   refuse(folder.write("two.nrrd", head + "dimension: 2\nsizes: 3 4\n" + space +
                                       "space directions: (1,0,0) (0,1,0)\n\n" +
                                       std::string(12, 'x')),
-         "is an image of 2 axes, not a volume");
+         "unsupported-file");
   const std::string series = head + "dimension: 4\nsizes: 3 4 2 1\n" + space +
                              "space directions: (1,0,0) (0,1,0) (0,0,1) none\n";
   for (const std::string kinds : {"", "kinds: domain domain domain time\n"})
     refuse(folder.write("four.nrrd", series + kinds + "\n" + std::string(24, 'x')),
-           "kinds: 4 spatial axes in a space of three dimensions");
+           "invalid-field: kinds");
   EXPECT_EQ(readVolume(folder.write("one.nrrd", series + "kinds: domain domain domain list\n\n" +
                                                     std::string(24, 'x')))
                 .grid.size,
@@ -137,11 +134,11 @@ TEST_F(MedicalHeaders, ErrorNamesFieldAndCause) {
   folder.write("half.raw", std::string(12, 'x'));
   refuse(folder.write("v.nhdr", head + "dimension: 3\nsizes: 3 4 2\nspacings: 1 1 1\n"
                                        "data file: LIST\nhalf.raw\nhalf.raw\n\n"),
-         "data file: its LIST has an empty line");
+         "invalid-field: data file | LIST");
   refuse(writeNrrd(space + unitDirections + "units: \"mm\" \"mm\" \"mm\"\n"),
-         "units: cannot be combined with a space; write space units");
-  refuse(writeMeta("DimSize = -3 4 2\n"), "DimSize: each must be an integer from 1 to 2147483647");
-  refuse(writeMeta("DimSize = 3 4.5 2\n"), "DimSize: each must be an integer");
+         "invalid-field: units");
+  refuse(writeMeta("DimSize = -3 4 2\n"), "invalid-field: DimSize");
+  refuse(writeMeta("DimSize = 3 4.5 2\n"), "invalid-field: DimSize");
 }
 
 } // namespace

@@ -46,9 +46,9 @@ TEST(MrmlAppearance, RefusesPropertyWithoutPoints) {
   const auto path = folder.writeScene(R"(<VolumeProperty id="p" name="mine"/>
       <VolumeProperty id="q" scalarOpacity="3 0 0 1" colorTransfer="4 0 1 1 1"/>)");
   MrmlScene scene(path);
-  expectRefused(path, "VolumeProperty mine (p): has neither",
+  expectRefused(path, "missing-transfer-points: VolumeProperty mine (p)",
                 [&] { readSceneProperty(scene, findNode(scene, "p")); });
-  expectRefused(path, "VolumeProperty (q): scalarOpacity: must be a count",
+  expectRefused(path, "invalid-field: VolumeProperty (q): scalarOpacity",
                 [&] { readSceneProperty(scene, findNode(scene, "q")); });
 }
 

@@ -97,37 +97,37 @@ TEST(MrmlDocument, ConvertsAttributesToBooleansAndNumbers) {
 }
 
 TEST(MrmlDocument, RefusesTextThatIsNotScene) {
-  refuse("", "not complete XML");
-  refuse("words", "not complete XML");
-  refuse("<MRML><Volume></MRML>", "not complete XML");
-  refuse("<MRML><Volume id=\"v\"", "not complete XML");
-  refuse("<VTKFile/>", "no MRML element");
+  refuse("", "damaged-file");
+  refuse("words", "damaged-file");
+  refuse("<MRML><Volume></MRML>", "damaged-file");
+  refuse("<MRML><Volume id=\"v\"", "damaged-file");
+  refuse("<VTKFile/>", "unsupported-file");
 }
 
 TEST(MrmlDocument, RefusesEntities) {
   refuse("<!DOCTYPE MRML [<!ENTITY a \"b\"><!ENTITY c \"&a;&a;\">]><MRML>&c;</MRML>",
-         "document type");
+         "invalid-file");
 }
 
 TEST(MrmlDocument, RefusesTooManyNodesOrAttributes) {
   std::string nodes = "<MRML>";
   for (int i = 0; i < 100'001; ++i)
     nodes += "<N/>";
-  refuse(nodes + "</MRML>", "more than 100000 nodes");
+  refuse(nodes + "</MRML>", "limit-exceeded");
   std::string node = "<N";
   for (int i = 0; i < 1001; ++i)
     node += " a" + std::to_string(i) + "=''";
   std::string attributes = "<MRML>";
   for (int i = 0; i < 1000; ++i)
     attributes += node + "/>";
-  refuse(attributes + "</MRML>", "more than a million attributes");
+  refuse(attributes + "</MRML>", "limit-exceeded");
 }
 
 TEST(MrmlDocument, DeepNestingIsReadOrRefused) {
   std::string deep = "<MRML>";
   for (int i = 0; i < 200'000; ++i)
     deep += "<a>";
-  refuse(deep, "not complete XML");
+  refuse(deep, "damaged-file");
   for (int i = 0; i < 200'000; ++i)
     deep += "</a>";
   EXPECT_EQ(MrmlDocument(deep + "</MRML>", "test").nodes().size(), 1U);

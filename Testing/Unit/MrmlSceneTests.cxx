@@ -61,9 +61,9 @@ TEST(MrmlScene, ErrorNamesNodeOfMissingFile) {
   const auto path = folder.writeScene(R"(<Volume id="v" name="CT" storageNodeRef="s"/>
     <VolumeArchetypeStorage id="s" fileName="gone.nrrd"/><Volume id="w" name="MR"/>)");
   MrmlScene scene(path);
-  expectRefused(path, "gone.nrrd, which does not exist",
+  expectRefused(path, "missing-file: gone.nrrd",
                 [&] { readSceneVolume(scene, findNode(scene, "v")); });
-  expectRefused(path, "Volume MR (w): has no file",
+  expectRefused(path, "invalid-field: Volume MR (w)",
                 [&] { readSceneVolume(scene, findNode(scene, "w")); });
 }
 
@@ -80,8 +80,8 @@ TEST(MrmlScene, WarningNamesVolumeByPathInArchive) {
   const Volume volume = readSceneVolume(scene, findNode(scene, "v"));
   EXPECT_EQ(volume.name, archive.string() + "/a/odd.nrrd");
   ASSERT_EQ(volume.warnings.size(), 1U);
-  EXPECT_EQ(volume.warnings[0].find(archive.string() + "/a/odd.nrrd: 1 voxels"), 0U)
-      << volume.warnings[0];
+  EXPECT_EQ(volume.warnings[0].subject, archive.string() + "/a/odd.nrrd");
+  expectMessage(volume.warnings[0], "non-finite-voxels | 1");
 }
 
 TEST(MrmlScene, SegmentationAndLabelMapAreInWorldSpace) {
@@ -202,18 +202,19 @@ TEST(MrmlScene, RefusesNonlinearAndCyclicTransforms) {
     MrmlScene scene(path);
     expectRefused(path, reason, [&] { toWorld(scene, findNode(scene, "n")); });
   };
-  refuse(R"(<BSplineTransform id="t" name="warp"/>)", "BSplineTransform warp (t): is not linear");
-  refuse(R"(<GridTransform id="t"/>)", "is not linear");
-  refuse(R"(<Transform id="t"/>)", "neither a matrix nor a file");
+  refuse(R"(<BSplineTransform id="t" name="warp"/>)", "invalid-field: BSplineTransform warp (t)");
+  refuse(R"(<GridTransform id="t"/>)", "invalid-field: GridTransform (t)");
+  refuse(R"(<Transform id="t"/>)", "invalid-field: Transform (t)");
   refuse(R"(<LinearTransform id="t" transformNodeRef="u" matrixTransformToParent=")" + rotation +
              R"("/><LinearTransform id="u" transformNodeRef="t" matrixTransformToParent=")" +
              rotation + "\"/>",
-         "loop");
+         "invalid-field: (n)");
   refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1"/>)",
-         "must be invertible");
+         "invalid-field: matrixTransformToParent");
   refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1"/>)",
-         "last row");
-  refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0"/>)", "16 numbers");
+         "invalid-field: matrixTransformToParent");
+  refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0"/>)",
+         "invalid-field: matrixTransformToParent");
 }
 
 // Crop boxes.
@@ -276,16 +277,17 @@ TEST(MrmlScene, RefusesMalformedRegions) {
     MrmlScene scene = folder.makeScene(roiNode);
     expectRefused(file, reason, [&] { readSceneRoi(scene, findNode(scene, "r")); });
   };
-  refuseJson(makeRoiJson("", R"(, "insideOut": true)"), "inside out");
-  refuseJson(R"({"markups": [{"type": "Fiducial"}]})", "must be \"ROI\"");
-  refuseJson(R"({"markups": []})", "is empty");
+  refuseJson(makeRoiJson("", R"(, "insideOut": true)"), "invalid-field: markups[0]");
+  refuseJson(R"({"markups": [{"type": "Fiducial"}]})", "invalid-field: markups[0].type");
+  refuseJson(R"({"markups": []})", "invalid-field: markups");
   refuseJson(R"({"markups": [{"type": "ROI", "center": [0, 0, 0], "size": [1, 0, 1]}]})",
-             "size must be above 0");
-  refuseJson(R"({"markups": [{"type": "ROI", "center": [0, 0, 0]}]})", "has no \"size\"");
-  refuseJson(makeRoiJson(R"("coordinateSystem": "XYZ", )"), "must be \"LPS\" or \"RAS\"");
+             "invalid-field: markups[0]");
+  refuseJson(R"({"markups": [{"type": "ROI", "center": [0, 0, 0]}]})",
+             "invalid-field: markups[0] | size");
+  refuseJson(makeRoiJson(R"("coordinateSystem": "XYZ", )"), "invalid-field: coordinateSystem");
   const auto path = folder.writeScene(R"(<AnnotationROI id="r" ctrlPtsCoord="1 2 3"/>)");
   MrmlScene scene(path);
-  expectRefused(path, "AnnotationROI (r): needs a center and a radius",
+  expectRefused(path, "invalid-field: AnnotationROI (r)",
                 [&] { readSceneRoi(scene, findNode(scene, "r")); });
 }
 
@@ -331,10 +333,13 @@ TEST(MrmlScene, RefusesDegenerateCameras) {
     MrmlScene scene(path);
     expectRefused(path, reason, [&] { readSceneCamera(scene, findNode(scene, "c")); });
   };
-  refuse(R"(position="1 2 3" focalPoint="1 2 3" viewUp="0 0 1")", "has a bad pose");
-  refuse(R"(position="1 2 3" focalPoint="1 2 9" viewUp="0 0 1")", "has a bad pose");
-  refuse(R"(position="1 2 3" focalPoint="1 9 3")", "viewUp: must be three numbers");
-  refuse(R"(position="1 2 3" focalPoint="1 9 3" viewUp="0 0 1" viewAngle="0")", "viewAngle");
+  refuse(R"(position="1 2 3" focalPoint="1 2 3" viewUp="0 0 1")",
+         "invalid-scene-camera: Camera (c)");
+  refuse(R"(position="1 2 3" focalPoint="1 2 9" viewUp="0 0 1")",
+         "invalid-scene-camera: Camera (c)");
+  refuse(R"(position="1 2 3" focalPoint="1 9 3")", "invalid-scene-camera: viewUp");
+  refuse(R"(position="1 2 3" focalPoint="1 9 3" viewUp="0 0 1" viewAngle="0")",
+         "invalid-scene-camera: viewAngle");
 }
 
 TEST(MrmlScene, ReadsBackgroundOfView) {

@@ -37,8 +37,8 @@ TEST(MrmlTransform, RefusesNonInvertibleTransforms) {
   for (const char* rows : {"1e60 0 0 0  0 1e60 0 0  0 0 1e60 0", "1.1 1e308 0 0  0 1 0 0  0 0 1 0",
                            "1 0 0 1e300  0 1 0 0  0 0 1 0", "1e8 0 0 0  0 1e-10 0 0  0 0 1 0",
                            "1 1e15 0 0  0 1 0 0  0 0 1 0", "1e-60 0 0 0  0 1e-60 0 0  0 0 1e-60 0"})
-    refuse(makeTransform(rows), "matrixTransformToParent: must be invertible");
-  const std::string product = "the product of the transforms above it must be invertible";
+    refuse(makeTransform(rows), "invalid-field: matrixTransformToParent");
+  const std::string product = "invalid-field: (n) | product";
   refuse(makeChain("100 0 0 0  0 100 0 0  0 0 100 0", 5), product);
   refuse(makeChain("1e8 0 0 0  0 1e8 0 0  0 0 1e8 0", 900), product);
   refuse(makeChain("1 0 0 5e8  0 1 0 0  0 0 1 0", 3), product);
@@ -83,7 +83,7 @@ TEST(MrmlTransform, ReadsEachFileOnce) {
 
   MrmlScene damaged = folder.makeScene(nodes);
   const auto refuse = [&] {
-    expectRefused(folder / "t.tfm", "is damaged",
+    expectRefused(folder / "t.tfm", "damaged-file",
                   [&] { toWorld(damaged, findNode(damaged, "n")); });
   };
   refuse();
@@ -101,13 +101,13 @@ TEST(MrmlTransform, RefusesPositionsBeyondInvertibleRange) {
       <ROI id="r" xyz="1 2 3" radiusXYZ="1e5 1e5 1e5" transformNodeRef="t"/>
       <Camera id="c" position="0 0 0" focalPoint="0 1e9 0" viewUp="0 0 1" transformNodeRef="t"/>)");
   MrmlScene scene(path);
-  expectRefused(path, "its world transform must be invertible",
+  expectRefused(path, "invalid-field | world transform",
                 [&] { readSceneVolume(scene, findNode(scene, "v")); });
-  expectRefused(path, "its world transform must be invertible",
+  expectRefused(path, "invalid-field | world transform",
                 [&] { readSceneSegmentation(scene, findNode(scene, "l")); });
-  expectRefused(path, "its world transform must be invertible",
+  expectRefused(path, "invalid-field | world transform",
                 [&] { readSceneRoi(scene, findNode(scene, "r")); });
-  expectRefused(path, "has a bad pose: position and target",
+  expectRefused(path, "invalid-scene-camera: Camera (c)",
                 [&] { readSceneCamera(scene, findNode(scene, "c")); });
 }
 

@@ -102,10 +102,10 @@ TEST(NiftiHeader, ShearedSformIsRefused) {
   };
   EXPECT_NO_THROW(readVolume(writeSheared(1e-3f)));
   const auto sheared = writeSheared(3e-3f);
-  expectRefused(sheared, "srow: is sheared", [&] { readVolume(sheared); });
+  expectRefused(sheared, "invalid-field: srow", [&] { readVolume(sheared); });
   file.rows = {};
   const auto flat = folder.write("v.nii", file.bytes());
-  expectRefused(flat, "srow: the axes are linearly dependent", [&] { readVolume(flat); });
+  expectRefused(flat, "invalid-field: srow", [&] { readVolume(flat); });
 }
 
 TEST(NiftiHeader, UnitsScaleGeometry) {
@@ -127,7 +127,7 @@ TEST(NiftiHeader, MissingFormsWarn) {
   const Volume volume = readVolume(folder.write("v.nii", NiftiFile().bytes()));
   EXPECT_EQ(volume.grid.indexToWorld.linear(), lpsToRas);
   ASSERT_EQ(volume.warnings.size(), 1u);
-  EXPECT_NE(volume.warnings[0].find("no qform or sform"), std::string::npos);
+  expectMessage(volume.warnings[0], "assumed-geometry");
 }
 
 /// Found by fuzzing: the offset was converted to an integer before its range was checked.

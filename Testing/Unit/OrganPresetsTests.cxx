@@ -74,14 +74,14 @@ TEST(OrganPresets, PresetMatchesSegmentsAndModality) {
   const auto refuse = [&](const Strings& names, const std::string& text) {
     expectRefused("s.seg.nrrd", text, [&] { match(names, Modality::mr); });
   };
-  refuse({"Spleen", "Kidney"}, "no preset matches a segment (Spleen, Kidney)");
+  refuse({"Spleen", "Kidney"}, "no-matching-preset | Spleen, Kidney");
   EXPECT_EQ(match({"brain", "tumour", "liver"}, Modality::mr), "tumor");
 }
 
 TEST(OrganPresets, SeveralMatchingPresetsAreListed) {
   const std::vector<OrganPreset> presets = {makePreset("liver", Modality::ct, {{"liver"}}),
                                             makePreset("heart", Modality::ct, {{"heart"}})};
-  expectRefused("s", "several presets match, liver (liver), heart (heart)", [&] {
+  expectRefused("s", "ambiguous-preset | liver (liver), heart (heart)", [&] {
     findMatchingPreset(presets, makeSegments({"liver", "heart"}), "s", [](Modality) -> bool {
       throw std::logic_error("the modality must not matter");
     });

@@ -1,4 +1,4 @@
-#include "base/Error.h"
+#include "ErrorChecks.h"
 #include "phantoms/PhantomWriter.h"
 #include "phantoms/Phantoms.h"
 
@@ -178,13 +178,8 @@ TEST_F(PhantomFiles, FilesOfOtherProgramsAreNotReplaced) {
     std::filesystem::remove_all(folder);
     std::filesystem::create_directory(folder);
     std::ofstream(folder / name) << "another program's";
-    try {
-      writePhantom(phantom, folder, "knee");
-      ADD_FAILURE() << name;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::usage);
-      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
-    }
+    catchError(ErrorKind::request, std::string("foreign-output: ") + name,
+               [&] { writePhantom(phantom, folder, "knee"); });
     EXPECT_EQ(readContent(folder / name), "another program's");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
   }
@@ -192,13 +187,8 @@ TEST_F(PhantomFiles, FilesOfOtherProgramsAreNotReplaced) {
 
 TEST_F(PhantomFiles, FolderThatCannotBeCreatedIsOutputError) {
   const auto file = folder / "knee.nrrd";
-  try {
-    writePhantom(phantom, file / "inside", "knee");
-    FAIL() << "no error was thrown";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::output);
-    EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos);
-  }
+  catchError(ErrorKind::output, "unwritable-file | " + file.string(),
+             [&] { writePhantom(phantom, file / "inside", "knee"); });
 }
 
 } // namespace

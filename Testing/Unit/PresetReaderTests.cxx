@@ -42,26 +42,26 @@ TEST(PresetReader, ErrorNamesField) {
   const std::string t = R"("title": "T", )", m = R"("modality": "MR", )";
   const std::string f = R"("focus": {"names": ["a"]}, )", g = R"("flags": {})";
   EXPECT_NO_THROW(parsePreset("{" + t + m + f + g + "}", "test"));
-  refuse("{" + m + f + g + "}", "has no \"title\"");
-  refuse("{" + t + f + g + "}", "has no \"modality\"");
-  refuse("{" + t + m + g + "}", "has no \"focus\"");
-  refuse("{" + t + R"("modality": "MR", "focus": {"names": ["a"]}})", "has no \"flags\"");
-  refuse("{" + t + m + f + g + R"(, "colors": 1})", "unknown key \"colors\"");
-  refuse("{" + t + R"("modality": "PET", )" + f + g + "}", "modality: must be \"CT\"");
-  refuse("{" + t + m + R"("focus": {"except": ["a"]}, )" + g + "}", "focus: has neither");
-  refuse("{" + t + m + R"("focus": {"names": "a"}, )" + g + "}", "focus.names: must be an array");
-  refuse("{" + t + m + R"("focus": {"names": ["a", ""]}, )" + g + "}", "focus.names[1]: must have");
-  refuse("{" + t + m + R"("focus": {"names": [7]}, )" + g + "}",
-         "focus.names[0]: must be a string");
+  refuse("{" + m + f + g + "}", "invalid-file | title");
+  refuse("{" + t + f + g + "}", "invalid-file | modality");
+  refuse("{" + t + m + g + "}", "invalid-file | focus");
+  refuse("{" + t + R"("modality": "MR", "focus": {"names": ["a"]}})", "invalid-file | flags");
+  refuse("{" + t + m + f + g + R"(, "colors": 1})", "invalid-file | colors");
+  refuse("{" + t + R"("modality": "PET", )" + f + g + "}", "invalid-field: modality");
+  refuse("{" + t + m + R"("focus": {"except": ["a"]}, )" + g + "}", "invalid-field: focus");
+  refuse("{" + t + m + R"("focus": {"names": "a"}, )" + g + "}", "invalid-field: focus.names");
+  refuse("{" + t + m + R"("focus": {"names": ["a", ""]}, )" + g + "}",
+         "invalid-field: focus.names[1]");
+  refuse("{" + t + m + R"("focus": {"names": [7]}, )" + g + "}", "invalid-field: focus.names[0]");
   for (const char* code : {"39607008", "SCT^", "^39607008", "SCT^3~", "SCT^3~4", "SCT^3^Lung"})
     refuse("{" + t + m + R"("focus": {"codes": ["SCT^1", ")" + std::string(code) + R"("]}, )" + g +
                "}",
-           "focus.codes[1]: must be a code");
-  refuse("{" + t + m + f + R"("flags": {"view": true}})", "flags.view: must be a string");
-  refuse("{" + t + m + f + R"("flags": {"view": [1, "a"]}})", "flags.view[1]: must be a number");
-  refuse("{" + t + m + f + R"("flags": {"new\nline": null}})", "flags.new line: must be a string");
-  refuse("[]", "must be an object");
-  refuse("{", "is not valid JSON");
+           "invalid-field: focus.codes[1]");
+  refuse("{" + t + m + f + R"("flags": {"view": true}})", "invalid-field: flags.view");
+  refuse("{" + t + m + f + R"("flags": {"view": [1, "a"]}})", "invalid-field: flags.view[1]");
+  refuse("{" + t + m + f + R"("flags": {"new\nline": null}})", "invalid-field: flags.new line");
+  refuse("[]", "invalid-file");
+  refuse("{", "damaged-file");
 }
 
 bool matchesName(const std::string& pattern, const std::string& name) {

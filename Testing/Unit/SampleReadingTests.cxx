@@ -189,7 +189,7 @@ TEST(SampleReading, RefusesStreamsOfWrongLength) {
   const std::string samples = rawBytes(makeSamples<std::int16_t>(-1000));
   const auto refuse = [&](const std::string& name, const std::string& content) {
     const auto path = folder.write(name, content);
-    expectRefused(path, "is damaged or truncated", [&] { readVolume(path); });
+    expectRefused(path, "damaged-file", [&] { readVolume(path); });
   };
   const std::string compressed = compressGzip(samples);
   const std::string head = makeNrrdHeader("gzip", "little");

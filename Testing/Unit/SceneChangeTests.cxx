@@ -150,8 +150,7 @@ TEST_F(SceneChange, LampInFocusFrameFollowsTheFocus) {
   EXPECT_TRUE(moved.updatedStages().lights);
   EXPECT_GT((findLamp(moved) - findLamp(before)).norm(), 1.0);
   request.focus.clear();
-  expectRefused("--lights", "lights[0].frame: is \"focus\", but there is no focus; add --focus",
-                [&] { PreparedScene{request}; });
+  expectRefused("--lights", "focus-required: lights[0].frame", [&] { PreparedScene{request}; });
 }
 
 TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
@@ -192,12 +191,11 @@ TEST_F(SceneChange, AutomaticScaleFramesTheVisibleMedium) {
 }
 
 TEST_F(SceneChange, WarnsIfTheTransferFunctionHidesTheFocus) {
-  EXPECT_EQ(PreparedScene(request).warnings(), std::vector<std::string>());
+  EXPECT_EQ(PreparedScene(request).warnings(), std::vector<Message>());
   request.transfer = R"({"extinction": [[149, 0], [300, 0.2]], "albedo": [[0, 1, 1, 1]]})";
-  const std::vector<std::string> warnings = PreparedScene(request).warnings();
+  const std::vector<Message> warnings = PreparedScene(request).warnings();
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("makes 100 % of the focus transparent"), std::string::npos)
-      << warnings[0];
+  expectMessage(warnings[0], "transparent-focus | 100 %");
 }
 
 TEST_F(SceneChange, ColorChangesReuseTheLabels) {

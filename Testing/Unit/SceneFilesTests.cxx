@@ -29,7 +29,7 @@ TEST(SceneFiles, FindsFilesBesideTheScene) {
   EXPECT_EQ(readLocated(files, "../it%27s%20%3C%22x%22%3E.txt"), "all six");
   EXPECT_EQ(readLocated(files, "../plus+%41.txt"), "not an escape");
   EXPECT_EQ(readLocated(files, (folder / "a b.txt").string()), "escaped"); // absolute
-  expectRefused(scene, "nowhere.nrrd, which does not exist", [&] { files.locate("nowhere.nrrd"); });
+  expectRefused(scene, "missing-file: nowhere.nrrd", [&] { files.locate("nowhere.nrrd"); });
 }
 
 TEST(SceneFiles, FindsFilesInAnArchiveAndRemovesUnpackedOnes) {
@@ -55,14 +55,15 @@ TEST(SceneFiles, FindsFilesInAnArchiveAndRemovesUnpackedOnes) {
         std::filesystem::perms::none);
     const std::string known = archive.string() + "/Study/Data/a b.txt";
     EXPECT_EQ(files.translatePaths(unpacked.string() + ": odd"), known + ": odd");
-    expectRefused(known, "is damaged", [&] {
+    expectRefused(known, "invalid-file", [&] {
       files.read({"Data/a%20b.txt"}, [](const std::vector<std::filesystem::path>& paths) {
         throw inputError(paths.front().string(), "is damaged");
       });
     });
-    expectRefused(archive, "outside the archive", [&] { files.locate("../../up.txt"); });
-    expectRefused(archive, "outside the archive", [&] { files.locate("/etc/passwd"); });
-    expectRefused(archive, "is not in the archive", [&] { files.locate("Data/missing.txt"); });
+    expectRefused(archive, "outside-archive", [&] { files.locate("../../up.txt"); });
+    expectRefused(archive, "outside-archive", [&] { files.locate("/etc/passwd"); });
+    expectRefused(archive, "missing-file: Data/missing.txt",
+                  [&] { files.locate("Data/missing.txt"); });
   }
   EXPECT_FALSE(std::filesystem::exists(unpacked));
   EXPECT_FALSE(std::filesystem::exists(unpacked.parent_path().parent_path().parent_path()));
@@ -88,11 +89,11 @@ TEST(SceneFiles, ErrorIsOneLineForNamesWithLineBreaks) {
   const TemporaryFolder folder;
   writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}});
   SceneFiles archive(folder / "a.mrb");
-  expectRefused(folder / "a.mrb", "names a b, which", [&] { archive.locate("a\nb"); });
-  expectRefused(folder / "a.mrb", "names ../a b, which", [&] { archive.locate("../a\nb"); });
+  expectRefused(folder / "a.mrb", "missing-file: a b", [&] { archive.locate("a\nb"); });
+  expectRefused(folder / "a.mrb", "outside-archive: ../a b", [&] { archive.locate("../a\nb"); });
   const auto scene = folder.write("a.mrml", "<MRML/>");
   SceneFiles beside(scene);
-  expectRefused(scene, "a b, which", [&] { beside.locate("a\nb"); });
+  expectRefused(scene, "missing-file: a b", [&] { beside.locate("a\nb"); });
 }
 
 TEST(SceneFiles, UnpacksAFileOnlyOnRequest) {
@@ -121,10 +122,10 @@ TEST(SceneFiles, ChoosesTheMainSceneAsSlicerDoes) {
   EXPECT_EQ(readMainScene({{"x/case.mrml", "named"}, {"x/other.mrml", "other"}}), "named");
   EXPECT_EQ(readMainScene({{"x/x.mrml", "like its folder"}, {"x/other.mrml", "other"}}),
             "like its folder");
-  expectRefused(folder / "case.mrb", "several scenes (x/a.mrml, x/b.mrml)", [&] {
+  expectRefused(folder / "case.mrb", "ambiguous-name | x/a.mrml, x/b.mrml", [&] {
     readMainScene({{"x/a.mrml", ""}, {"x/b.mrml", ""}});
   });
-  expectRefused(folder / "case.mrb", "has no .mrml", [&] { readMainScene({{"x/a.txt", ""}}); });
+  expectRefused(folder / "case.mrb", "unsupported-file", [&] { readMainScene({{"x/a.txt", ""}}); });
 }
 
 TEST(SceneFiles, RefusesDamagedAndEscapingArchives) {
@@ -134,16 +135,16 @@ TEST(SceneFiles, RefusesDamagedAndEscapingArchives) {
     writeArchive(folder / "bad.mrb", files);
     expectRefused(folder / "bad.mrb", reason, [&] { SceneFiles(folder / "bad.mrb"); });
   };
-  refuse({{"a.mrml", "<MRML/>"}, {"../../evil", "x"}}, "leads out of the archive");
-  refuse({{"a.mrml", "<MRML/>"}, {"/etc/evil", "x"}}, "leads out of the archive");
-  refuse({{"a.mrml", "<MRML/>"}, {"x/../../evil", "x"}}, "leads out of the archive");
+  refuse({{"a.mrml", "<MRML/>"}, {"../../evil", "x"}}, "outside-archive");
+  refuse({{"a.mrml", "<MRML/>"}, {"/etc/evil", "x"}}, "outside-archive");
+  refuse({{"a.mrml", "<MRML/>"}, {"x/../../evil", "x"}}, "outside-archive");
 
   const auto textFile = folder.write("words.mrb", "not an archive");
-  expectRefused(textFile, "is not a complete archive", [&] { SceneFiles files(textFile); });
+  expectRefused(textFile, "damaged-file", [&] { SceneFiles files(textFile); });
   writeArchive(folder / "whole.mrb", {{"a.mrml", "<MRML/>" + std::string(5000, ' ')}});
   const std::string bytes = readBytes(folder / "whole.mrb");
   const auto truncated = folder.write("half.mrb", bytes.substr(0, bytes.size() / 2));
-  expectRefused(truncated, "is not a complete archive", [&] { SceneFiles files(truncated); });
+  expectRefused(truncated, "damaged-file", [&] { SceneFiles files(truncated); });
 }
 
 TEST(SceneFiles, RefusesNamesThatAreTooLong) {
@@ -154,7 +155,7 @@ TEST(SceneFiles, RefusesNamesThatAreTooLong) {
   for (const std::string& name : {deep + "a.nrrd", std::string(300, 'n')}) {
     writeArchive(folder / "long.mrb", {{"a.mrml", "<MRML/>"}, {name, "x"}});
     SceneFiles files(folder / "long.mrb");
-    expectRefused(folder / "long.mrb", "limit for file names", [&] { files.locate(name); });
+    expectRefused(folder / "long.mrb", "limit-exceeded", [&] { files.locate(name); });
   }
 }
 
@@ -172,8 +173,7 @@ TEST(SceneFiles, RefusesEntriesBeyondTheSizeLimit) {
     bytes.replace(entry + 24, 4, size, 4);                // its unpacked size
     folder.write("b.mrb", bytes);
     SceneFiles files(folder / "b.mrb");
-    expectRefused(folder / "b.mrb", "unpacks, together with the files before it, to more than",
-                  [&] { files.locate("big"); });
+    expectRefused(folder / "b.mrb", "limit-exceeded", [&] { files.locate("big"); });
   }
 }
 
@@ -189,7 +189,7 @@ TEST(SceneFiles, RefusesDamagedAndOversizedEntries) {
   bytes[at] = static_cast<char>(bytes[at] ^ 1);
   const auto damaged = folder.write("damaged.mrb", bytes);
   SceneFiles files(damaged);
-  expectRefused(damaged, "data: is damaged", [&] { files.locate("data"); });
+  expectRefused(damaged, "damaged-file: data", [&] { files.locate("data"); });
 
   // Sets the uncompressed size in the central directory to almost 4 GB.
   bytes = readBytes(folder / "a.mrb");

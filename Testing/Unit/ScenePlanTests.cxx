@@ -46,20 +46,17 @@ TEST(ScenePlan, ChoosesTheVolumeNamedByTheUser) {
   EXPECT_EQ(findVolume(rendered, "three"), "v3");
   EXPECT_EQ(findVolume(R"(<Volume id="a" name="b"/><Volume id="b" name="a"/>)", "a"),
             "a"); // ids take precedence
-  refuse(rendered, "has no scalar volume \"four\"; it has one (v1), two (v2), three (v3)",
-         {.volume = "four"});
-  refuse(R"(<Volume id="a" name="x"/><Volume id="b" name="x"/>)",
-         "--volume x matches several: x (a), x (b); choose one by its id", {.volume = "x"});
+  refuse(rendered, "unknown-name | \"four\" | one (v1), two (v2), three (v3)", {.volume = "four"});
+  refuse(R"(<Volume id="a" name="x"/><Volume id="b" name="x"/>)", "ambiguous-name | x (a), x (b)",
+         {.volume = "x"});
 }
 
 TEST(ScenePlan, RefusesAmbiguousVolumes) {
-  refuse(threeVolumes,
-         "several volumes to render (one (v1), two (v2), three (v3)); choose one with "
-         "--volume");
+  refuse(threeVolumes, "ambiguous-volume | one (v1), two (v2), three (v3)");
   refuse(threeVolumes +
              R"(<GPURayCastVolumeRendering id="d1"/><GPURayCastVolumeRendering id="d2"/>)",
-         "several volumes to render (one (v1), two (v2))");
-  refuse("<Model/>", "has no scalar volume");
+         "ambiguous-volume | one (v1), two (v2))");
+  refuse("<Model/>", "invalid-file");
 }
 
 TEST(ScenePlan, FindsVolumePropertyAndRoiOfTheRendering) {
@@ -101,9 +98,8 @@ TEST(ScenePlan, WarnsAboutAnActiveClipNode) {
   const std::string nodes = R"(<Volume id="v" displayNodeRef="d"/><Model id="m" name="knife"/>
     <GPURayCastVolumeRendering id="d" references="ClipNode:m;" clipping=")";
   const MrmlDocument on = parse(nodes + "true\"/>");
-  EXPECT_EQ(planRender(on, {}).warnings,
-            std::vector<std::string>{
-                "Model knife (m): clips the rendering in Slicer, but is ignored here"});
+  ASSERT_EQ(planRender(on, {}).warnings.size(), 1U);
+  expectMessage(planRender(on, {}).warnings[0], "ignored-scene-setting: Model knife (m)");
   const MrmlDocument off = parse(nodes + "false\"/>");
   EXPECT_TRUE(planRender(off, {}).warnings.empty());
 }
@@ -114,9 +110,9 @@ TEST(ScenePlan, RefusesIntensityProjections) {
   const auto makeScene = [&](const std::string& technique) {
     return volume + rendering + "/><View id=\"w\" raycastTechnique=\"" + technique + "\"/>";
   };
-  refuse(makeScene("MaximumIntensityProjection"), "maximum intensity projection");
-  refuse(makeScene("MinimumIntensityProjection"), "minimum intensity projection");
-  refuse(volume + rendering + " raycastTechnique=\"2\"/>", "maximum intensity projection");
+  refuse(makeScene("MaximumIntensityProjection"), "unsupported-file | maximum intensity");
+  refuse(makeScene("MinimumIntensityProjection"), "unsupported-file | minimum intensity");
+  refuse(volume + rendering + " raycastTechnique=\"2\"/>", "unsupported-file | maximum intensity");
   const MrmlDocument composite = parse(makeScene("Composite"));
   EXPECT_EQ(planRender(composite, {}).view->id, "w");
 }
@@ -169,8 +165,8 @@ TEST(ScenePlan, ChoosesTheVisibleOrNamedSegmentation) {
             "l");
   EXPECT_EQ(findSegmentation("", {.segmentation = "file.nrrd", .needsSegmentation = true}), "none");
   refuse("<Volume id=\"v\"/><Segmentation id=\"s\"/><Segmentation id=\"t\"/>",
-         "several segmentations ((s), (t)); choose one with --segmentation", any);
-  refuse("<Volume id=\"v\"/>", "has no segmentation, but a focus needs one", any);
+         "ambiguous-segmentation | (s), (t)", any);
+  refuse("<Volume id=\"v\"/>", "segmentation-required", any);
 }
 
 TEST(ScenePlan, ListsIgnoredNodes) {

@@ -23,9 +23,9 @@ TEST(SegmentChoice, IdsPrecedeNamesAndNamesPrecedeValues) {
   EXPECT_EQ(s.makeFocusMask({"first"}, s.grid()).count, 2);
   EXPECT_EQ(s.makeFocusMask({"3"}, s.grid()).count, 2);
   EXPECT_EQ(s.makeFocusMask({"4"}, s.grid()).count, 4);
-  expectRefused(folder / "s.seg.nrrd", "c (twin), d (twin)",
+  expectRefused(folder / "s.seg.nrrd", "ambiguous-name | c (twin), d (twin)",
                 [&] { s.makeFocusMask({"twin"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", "has no segment \"spleen\"; it has 2 (first)",
+  expectRefused(folder / "s.seg.nrrd", "unknown-name | spleen | 2 (first)",
                 [&] { s.makeFocusMask({"spleen"}, s.grid()); });
 }
 
@@ -36,10 +36,11 @@ TEST(SegmentChoice, RefusesEmptyFocusAndListsAtMostTwelveSegments) {
     addSegment(geometry, n, "id" + std::to_string(n), "name\nof two lines", "7", "0");
   writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  expectRefused(folder / "s.seg.nrrd", "the focus has no voxel",
-                [&] { s.makeFocusMask({"id3"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", "id11", [&] { s.makeFocusMask({"x"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", ", …", [&] { s.makeFocusMask({"x"}, s.grid()); });
+  expectRefused(folder / "s.seg.nrrd", "empty-focus", [&] { s.makeFocusMask({"id3"}, s.grid()); });
+  expectRefused(folder / "s.seg.nrrd", "unknown-name | id11",
+                [&] { s.makeFocusMask({"x"}, s.grid()); });
+  expectRefused(folder / "s.seg.nrrd", "unknown-name | , …",
+                [&] { s.makeFocusMask({"x"}, s.grid()); });
   expectRefused(folder / "s.seg.nrrd", "", [&] { s.makeFocusMask({}, s.grid()); });
 }
 
@@ -54,10 +55,10 @@ TEST(SegmentChoice, ErrorSuggestsSimilarSegments) {
   const auto expectMessage = [&](const std::string& selector, const std::string& text) {
     expectRefused(folder / "s.seg.nrrd", text, [&] { s.makeFocusMask({selector}, s.grid()); });
   };
-  expectMessage("Kidneys", "\"Kidneys\"; did you mean kidney_left, kidney_right?");
-  expectMessage("left kidney", "did you mean kidney_left?");
-  expectMessage("lung", "did you mean Right Lung?");
-  expectMessage("spleen", "it has a (kidney_left), b (kidney_right), c (Right Lung)");
+  expectMessage("Kidneys", "unknown-name | \"Kidneys\" | kidney_left, kidney_right?");
+  expectMessage("left kidney", "unknown-name | mean kidney_left?");
+  expectMessage("lung", "unknown-name | Right Lung?");
+  expectMessage("spleen", "unknown-name | a (kidney_left), b (kidney_right), c (Right Lung)");
   EXPECT_EQ(s.makeFocusMask({" kidney_left "}, s.grid()).names,
             std::vector<std::string>{"kidney_left"});
 }

@@ -40,7 +40,7 @@ TEST(SegmentTags, TerminologyIsReadWithoutTheLabels) {
   EXPECT_EQ(readSegmentation(folder / "s.seg.nrrd").segments()[1].region, "SCT^12738006");
   writeFile(folder / "labels.nrrd", std::vector<std::uint8_t>(24, 1));
   EXPECT_TRUE(readSegmentInfos(folder / "labels.nrrd").empty());
-  expectRefused(folder / "none.seg.nrrd", "no such file",
+  expectRefused(folder / "none.seg.nrrd", "missing-file",
                 [&] { readSegmentInfos(folder / "none.seg.nrrd"); });
 }
 

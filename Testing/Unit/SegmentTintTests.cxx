@@ -180,16 +180,16 @@ TEST(SegmentTint, MixturesHaveTheMediaOfTheirMaterials) {
 
 TEST(SegmentTint, RefusesInvalidRequests) {
   const auto segments = makeRow({"liver", "empty"});
-  expectRefused("row.seg.nrrd", "has no segment \"live\"; did you mean liver?",
+  expectRefused("row.seg.nrrd", "unknown-name | \"live\" | liver",
                 [&] { makePlan(segments, library, {"live: color=#ffffff"}); });
-  expectRefused("row.seg.nrrd", "no segment has a voxel, so nothing can be colored",
+  expectRefused("row.seg.nrrd", "no-voxel-to-color",
                 [&] { makePlan(makeRow({"empty"}), library, {}); });
   const auto refuseTable = [&](const std::string& members, const std::string& text) {
     const auto table = makeMaterials(R"({"version": 1, )" + members + "}");
     expectRefused("m.json", text, [&] { makePlan(segments, table, {}); });
   };
-  refuseTable(R"("context": {"saturation": 0.5})", "context: needs a focus; add --focus");
-  refuseTable(R"("context": {"lightness": 0})", "context: needs a focus; add --focus");
+  refuseTable(R"("context": {"saturation": 0.5})", "focus-required: context");
+  refuseTable(R"("context": {"lightness": 0})", "focus-required: context");
 }
 
 TEST(SegmentTint, RefusesMoreThan255Materials) {
@@ -207,7 +207,7 @@ TEST(SegmentTint, RefusesMoreThan255Materials) {
     return std::make_shared<SegmentsInput>(SegmentsInput{
         Segmentation("s.nrrd", Grid(Size3(256, 1, 1), Affine::Identity()), 1, labels, segments)});
   };
-  expectRefused("s.nrrd", "more than 255 materials",
+  expectRefused("s.nrrd", "too-many-materials | 255",
                 [&] { makePlan(makeInput(256), library, {}); });
   EXPECT_EQ(makePlan(makeInput(255), library, {}).components.size(), 256U);
 }

@@ -156,7 +156,7 @@ TEST(SegmentationReader, ReadsOverlappingLayers) {
     EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 3);
     EXPECT_EQ(s.makeFocusMask({"b"}, s.grid()).count, 2);
     EXPECT_EQ(s.makeFocusMask({"a", "tumor"}, s.grid()).count, 4);
-    expectRefused(folder / "s.seg.nrrd", "a (liver), b (tumor)",
+    expectRefused(folder / "s.seg.nrrd", "ambiguous-name | a (liver), b (tumor)",
                   [&] { s.makeFocusMask({"1"}, s.grid()); });
   }
 }
@@ -166,27 +166,27 @@ TEST(SegmentationReader, RefusesFilesThatAreNotSegmentations) {
   const auto refuse = [&folder](const std::string& text) {
     expectRefused(folder / "s.nrrd", text, [&] { readSegmentation(folder / "s.nrrd"); });
   };
-  refuse("no such file");
+  refuse("missing-file");
   std::vector<float> fraction(24, 0.0f);
   fraction[3] = 0.5f;
   writeFile(folder / "s.nrrd", fraction);
-  refuse("not integers");
+  refuse("unsupported-file");
   fraction[3] = std::numeric_limits<float>::quiet_NaN();
   writeFile(folder / "s.nrrd", fraction);
-  refuse("not integers");
+  refuse("unsupported-file");
   fraction[3] = 2147483648.0f;
   writeFile(folder / "s.nrrd", fraction);
-  refuse("32 bits");
+  refuse("limit-exceeded");
   writeFile(folder / "s.nrrd", std::vector<std::uint8_t>(72, 1), {.components = 3});
-  refuse("names no segments");
+  refuse("unsupported-file");
   FileGeometry geometry;
   addSegment(geometry, 0, "a", "a", "1", "1");
   writeFile(folder / "s.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
-  refuse("Segment0_Layer");
+  refuse("invalid-field: Segment0_Layer");
   geometry.fields["Segment0_Layer"] = "0";
   geometry.fields["Segment0_LabelValue"] = "one";
   writeFile(folder / "s.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
-  refuse("Segment0_LabelValue");
+  refuse("invalid-field: Segment0_LabelValue");
 }
 
 // ---- variants in Slicer's files
@@ -248,7 +248,7 @@ TEST(SegmentationReader, IgnoresLabelValuesWithoutSegment) {
   EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 2);
   EXPECT_EQ(s.makeFocusMask({"300"}, s.grid()).count, 2);
   EXPECT_EQ(s.makeFocusMask({"a", "b"}, s.grid()).count, 4);
-  expectRefused(folder / "s.seg.nrrd", "has no segment \"5\"",
+  expectRefused(folder / "s.seg.nrrd", "unknown-name | 5",
                 [&] { s.makeFocusMask({"5"}, s.grid()); });
   const auto statistics = s.statistics();
   EXPECT_EQ(statistics[0].voxels, 2);
@@ -326,16 +326,17 @@ TEST(SegmentationReader, PlacesTheOldestFilesByTheirExtentField) {
 
   geometry.fields["Segmentation_Extent"] = "10 12 20 23 5";
   writeFile(folder / "s.seg.nrrd", frames, geometry);
-  expectRefused(folder / "s.seg.nrrd", "Segmentation_Extent: must be six integers",
+  expectRefused(folder / "s.seg.nrrd", "invalid-field: Segmentation_Extent",
                 [&] { readSegmentation(folder / "s.seg.nrrd"); });
 }
 
 TEST(SegmentationReader, RefusesFramesWithoutSegments) {
   const TemporaryFolder folder;
   writeFile(folder / "s.nrrd", std::vector<std::uint8_t>(48, 1), {.size = {3, 4, 2, 2}});
-  expectRefused(folder / "s.nrrd", "names no segments",
+  expectRefused(folder / "s.nrrd", "unsupported-file",
                 [&] { readSegmentation(folder / "s.nrrd"); });
-  expectRefused(folder / "s.nrrd", "4th with 2 frames", [&] { readVolume(folder / "s.nrrd"); });
+  expectRefused(folder / "s.nrrd", "unsupported-file | 4th | 2 frames",
+                [&] { readVolume(folder / "s.nrrd"); });
 }
 
 TEST(SegmentationReader, RefusesABrokenGzipStream) {
@@ -352,7 +353,7 @@ TEST(SegmentationReader, RefusesABrokenGzipStream) {
   const auto refuse = [&](const std::string& bytes, const char* what) {
     SCOPED_TRACE(what);
     folder.write("s.seg.nrrd", bytes);
-    expectRefused(file, "write it again", [&] { readSegmentation(file); });
+    expectRefused(file, "damaged-file", [&] { readSegmentation(file); });
   };
   const std::size_t half = samples + (full.size() - samples) / 2;
   refuse(full.substr(0, samples), "no stream");

@@ -77,7 +77,7 @@ TEST(SlicerPresets, AreNamedVolumeProperties) {
   const TransferFunction function = readInlineProperty(presets, *properties.at(0));
   EXPECT_NEAR(function.extinction(50)[0], -std::log(0.75), 1e-3); // opacity 0.25 over 1 mm
   EXPECT_TRUE(function.shading);
-  expectRefused("presets.xml", "VolumeProperty Broken: scalarOpacity",
+  expectRefused("presets.xml", "invalid-field: VolumeProperty Broken: scalarOpacity",
                 [&] { readInlineProperty(presets, *properties.at(1)); });
 }
 

@@ -167,8 +167,8 @@ void readNifti(const std::filesystem::path& path, const SampleConsumer& consume)
     if (header.size[axis] != 1) { // the fifth axis holds vector components (nifti1.h)
       const char* const problem = axis == 4 ? " components per voxel; convert it to one scalar"
                                             : " frames; extract one of them";
-      throw inputError(path, "has ", axes, " axes, the ", axis + 1, "th with ", header.size[axis],
-                       problem);
+      throw inputError(ErrorCode::unsupportedFile, path, "has ", axes, " axes, the ", axis + 1,
+                       "th with ", header.size[axis], problem);
     }
   const Size3 size(header.size[0], header.size[1], header.size[2]);
   const Mat3& axesToRas = header.indexToRas.linear();

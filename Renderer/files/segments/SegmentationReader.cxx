@@ -112,12 +112,12 @@ public:
     info.name = name ? *name : info.id;
     info.labelValue = number("LabelValue", 1);
     if (info.labelValue == 0)
-      throw inputError(m_source, m_prefix, "LabelValue: 0 is the background; use another value");
+      throw fieldError(m_source, m_prefix + "LabelValue", "0 is the background; use another value");
     // Older files state no layer; if there are several, each segment has its own.
     const std::int32_t layer = number("Layer", layerCount == 1 ? 0 : static_cast<std::int32_t>(n));
     if (std::cmp_less(layer, 0) || std::cmp_greater_equal(layer, layerCount))
-      throw inputError(m_source, m_prefix, "Layer: is ", layer, ", but the file has ", layerCount,
-                       " layers; save it again");
+      throw fieldError(m_source, m_prefix + "Layer", "is ", layer, ", but the file has ",
+                       layerCount, " layers; save it again");
     info.layer = static_cast<std::size_t>(layer);
     readColor(info.color);
     if (const std::string* tags = find("Tags"))
@@ -130,7 +130,7 @@ private:
     const std::string* text = find(field);
     const auto value = text ? parseNumber<std::int32_t>(*text) : fallback;
     if (!value)
-      throw inputError(m_source, m_prefix, field, ": must be an integer");
+      throw fieldError(m_source, m_prefix + field, "must be an integer");
     return *value;
   }
 

@@ -1,0 +1,19 @@
+# No string literal of the renderer names an option, except in the program: below it, errors and warnings carry codes,
+# which program/ErrorAdvice.cxx turns into advice. io/SelfExec.h passes an argument to the dynamic loader.
+# usage: cmake -DRENDERER=FOLDER -P Messages.cmake
+cmake_minimum_required(VERSION 3.25)
+file(GLOB_RECURSE sources RELATIVE "${RENDERER}" "${RENDERER}/*.h" "${RENDERER}/*.cxx")
+list(FILTER sources EXCLUDE REGEX "^program/|^io/SelfExec.h$")
+set(errors)
+foreach(source IN LISTS sources)
+  file(STRINGS "${RENDERER}/${source}" lines ENCODING UTF-8 REGEX "\"[^\"]*--[a-z]")
+  foreach(line IN LISTS lines)
+    list(APPEND errors "${source}: ${line}")
+  endforeach()
+endforeach()
+list(LENGTH sources count)
+if(errors OR count LESS 100)
+  list(JOIN errors "\n" text)
+  message("${text}")
+  message(FATAL_ERROR "${RENDERER}: ${count} sources; the above names options below the program")
+endif()
