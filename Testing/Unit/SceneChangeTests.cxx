@@ -150,7 +150,7 @@ TEST_F(SceneChange, LampInFocusFrameFollowsTheFocus) {
   EXPECT_TRUE(moved.updatedStages().lights);
   EXPECT_GT((findLamp(moved) - findLamp(before)).norm(), 1.0);
   request.focus.clear();
-  expectRefused("--lights", "focus-required: lights[0].frame", [&] { PreparedScene{request}; });
+  expectRefused("lights", "focus-required: lights[0].frame", [&] { PreparedScene{request}; });
 }
 
 TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
