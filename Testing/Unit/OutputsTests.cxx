@@ -80,7 +80,7 @@ TEST_F(OutputFiles, FailedCommitRestoresPreviousFiles) {
   for (const char* name : {"a", "b", "c"})
     outputs.write(folder / name, "new");
   fs::create_directory(folder / "c");
-  catchError(ErrorKind::output, "unwritable-file", [&] { outputs.commit(); });
+  catchError(ErrorKind::output, "not-a-file", [&] { outputs.commit(); });
   EXPECT_EQ(readBytes(folder / "a"), "old");
   EXPECT_FALSE(fs::exists(folder / "b"));
   EXPECT_TRUE(fs::is_directory(folder / "c"));
@@ -111,7 +111,7 @@ TEST_F(OutputFiles, OwnOutputIsRefusedAsInput) {
   outputs.add(folder / "a");
   outputs.write(folder / "a", "new");
   outputs.commit();
-  catchError(ErrorKind::input, "missing-file", [&] { requireFile(folder / "a", ""); });
+  catchError(ErrorKind::input, "output-conflict", [&] { requireFile(folder / "a", ""); });
   fs::remove(folder / "a"); // its inode number may be reused
   folder.write("a", "another one");
   requireFile(folder / "a", "");
@@ -233,7 +233,7 @@ TEST_F(OutputFiles, FileCreatedMeanwhileIsNotReplaced) {
   outputs.add(folder / "a", hasProvenanceTag);
   outputs.write(folder / "a", "new");
   folder.write("a", "another program's");
-  catchError(ErrorKind::request, "output-conflict", [&] { outputs.commit(); });
+  catchError(ErrorKind::request, "foreign-output", [&] { outputs.commit(); });
   EXPECT_EQ(readBytes(folder / "a"), "another program's");
 }
 
