@@ -1,28 +1,25 @@
 #include "Process.h"
 
-#include "RunSettings.h"
 #include "base/Stopwatch.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <regex>
 #include <stdexcept>
 #include <thread>
 
 #include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 namespace fenestra {
 namespace {
-
-/// Time limit of a process in seconds.
-double getTimeLimit() {
-  return 30.0 * static_cast<double>(testing::slowdownFactor());
-}
 
 /// Content of a file. Opens it again, since reading through `file` would move the child's position.
 std::string readContent(int file) {
@@ -67,7 +64,7 @@ Process::Process(const Arguments& arguments, const std::filesystem::path& folder
 Process::~Process() {
   if (isRunning()) {
     ::kill(m_id, SIGKILL);
-    ::waitpid(m_id, nullptr, 0);
+    reap(0);
   }
   closeInput();
   ::close(m_out);
@@ -95,34 +92,55 @@ void Process::send(int signal) const {
 }
 
 bool Process::waitUntilHandling(int signal) const {
-  return waitUntil(
-      [&] {
-        std::ifstream status("/proc/" + std::to_string(m_id) + "/status");
-        for (std::string line; std::getline(status, line);)
-          if (line.starts_with("SigCgt:"))
-            return (std::strtoull(line.c_str() + std::strlen("SigCgt:"), nullptr, 16) >>
-                        (signal - 1) &
-                    1) != 0;
-        return false;
-      },
-      10.0);
+  return waitUntil([&] {
+    std::ifstream status("/proc/" + std::to_string(m_id) + "/status");
+    for (std::string line; std::getline(status, line);)
+      if (line.starts_with("SigCgt:"))
+        return (std::strtoull(line.c_str() + std::strlen("SigCgt:"), nullptr, 16) >> (signal - 1) &
+                1) != 0;
+    return false;
+  });
+}
+
+bool Process::waitUntilOpen(const std::filesystem::path& file) const {
+  return waitUntil([&] {
+    namespace fs = std::filesystem;
+    std::error_code ignored; // of descriptors that are closed meanwhile
+    return std::ranges::any_of(
+        fs::directory_iterator("/proc/" + std::to_string(m_id) + "/fd", ignored),
+        [&](const auto& entry) { return fs::equivalent(entry.path(), file, ignored); });
+  });
 }
 
 bool Process::waitForOutput(const std::string& expression) const {
   const std::regex pattern(expression);
-  return waitUntil([&] { return std::regex_search(readContent(m_out), pattern); }, getTimeLimit());
+  return waitUntil([&] { return std::regex_search(readContent(m_out), pattern); });
+}
+
+double Process::cpuSeconds() const {
+  std::ifstream file("/proc/" + std::to_string(m_id) + "/stat");
+  file.ignore(std::numeric_limits<std::streamsize>::max(), ')'); // the name may contain spaces
+  std::string skipped;
+  for (int field = 3; field < 14; ++field)
+    file >> skipped;
+  double ticks = 0.0;
+  for (int field = 14; field < 18; ++field) { // user and system time, of itself and of its children
+    double more = 0.0;
+    file >> more;
+    ticks += more;
+  }
+  return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
 Outcome Process::wait() {
-  const Stopwatch watch;
-  waitUntil([] { return false; }, getTimeLimit());
-  Outcome outcome;
-  outcome.seconds = watch.seconds();
+  const double before = cpuSeconds();
+  waitUntil([] { return false; });
   if (isRunning()) {
     ::kill(m_id, SIGKILL);
-    ::waitpid(m_id, &m_waitStatus, 0);
-    m_ended = true;
+    reap(0);
   }
+  Outcome outcome;
+  outcome.cpuSeconds = m_cpuSeconds - before;
   if (WIFEXITED(m_waitStatus))
     outcome.status = WEXITSTATUS(m_waitStatus);
   outcome.out = readContent(m_out);
@@ -138,18 +156,26 @@ Outcome Process::wait() {
 }
 
 bool Process::isRunning() const {
-  if (!m_ended)
-    m_ended = ::waitpid(m_id, &m_waitStatus, WNOHANG) == m_id;
+  reap(WNOHANG);
   return !m_ended;
 }
 
-bool Process::waitUntil(const std::function<bool()>& condition, double limit) const {
-  for (const Stopwatch watch; isRunning() && watch.seconds() < limit;) {
+void Process::reap(int flags) const {
+  rusage usage = {};
+  if (m_ended || ::wait4(m_id, &m_waitStatus, flags, &usage) != m_id)
+    return;
+  m_ended = true;
+  for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+    m_cpuSeconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+bool Process::waitUntil(const std::function<bool()>& condition) const {
+  for (const Stopwatch watch; isRunning() && watch.seconds() < hangLimit;) {
     if (condition())
       return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  return false;
+  return condition();
 }
 
 Outcome run(const Arguments& arguments, const std::filesystem::path& folder) {

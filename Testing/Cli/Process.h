@@ -14,8 +14,8 @@ struct Outcome {
   int status = -1; ///< exit status; -1 if a signal ended the process
   std::string out, err;
   std::string
-      statusLine;       ///< status line about appearance, lights and labels, moved here from `err`
-  double seconds = 0.0; ///< wall-clock time of wait()
+      statusLine; ///< status line about appearance, lights and labels, moved here from `err`
+  double cpuSeconds = 0.0; ///< processor time of the process during wait(), of all threads
 };
 
 /// Target of a process's standard output: a file that the test reads, a pipe without a reader, or a
@@ -35,23 +35,33 @@ public:
   /// Writes to standard input.
   void write(const std::string& text) const;
   void closeInput();
-  /// Waits until the process has a handler for `signal`. False if it ends, or after ten seconds.
+  /// Waits until a condition holds. Returns whether it holds; false: the process has ended, or
+  /// `hangLimit` has passed.
+  bool waitUntil(const std::function<bool()>& condition) const;
+  /// Waits until the process has a handler for `signal`.
   bool waitUntilHandling(int signal) const;
-  /// Waits until standard output matches a regular expression. False if the process ends, or after
-  /// the time limit of wait().
+  /// Waits until the process has opened `file`.
+  bool waitUntilOpen(const std::filesystem::path& file) const;
+  /// Waits until standard output matches a regular expression.
   bool waitForOutput(const std::string& expression) const;
   std::string output() const; ///< standard output so far
-  /// Waits until the process ends; kills it after 30 seconds, times FENESTRA_BRIEF in slow builds.
+  /// Processor time of the process so far in seconds, of all threads; 0 if it has ended.
+  double cpuSeconds() const;
+  /// Waits until the process ends; kills it after `hangLimit`.
   Outcome wait();
+
+  /// Seconds after which a process is taken to hang, even on a busy machine.
+  static constexpr double hangLimit = 300.0;
 
 private:
   bool isRunning() const;
-  bool waitUntil(const std::function<bool()>& condition, double limit) const;
+  void reap(int flags) const; ///< stores how the process ended, if it has; `flags` of wait4()
 
   int m_id = 0;
   int m_in = -1;              ///< pipe to standard input
   int m_out = -1, m_err = -1; ///< memory files for standard output and standard error
   mutable int m_waitStatus = 0;
+  mutable double m_cpuSeconds = 0.0; ///< of the ended process and its children
   mutable bool m_ended = false;
 };
 

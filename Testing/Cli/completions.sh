@@ -91,7 +91,7 @@ while IFS= read -r line; do
 done
 zpty -d shell
 Z
-  timeout 60 zsh -f complete.zsh
+  timeout 600 zsh -f complete.zsh
 }
 
 # The printed script or page must contain every option of every command's help.

@@ -3,7 +3,7 @@
 # image must equal that of an uninterrupted run byte for byte, and only the image and its checkpoint may
 # remain. Prints counts; exit status 1 if an image differs or other files remain.
 # usage: kills.sh FENESTRA KILLS [MINIMUM [SAMPLES [THREADS]]]
-#   MINIMUM  minimum number of kills after a checkpoint was written; may need more than KILLS [0]
+#   MINIMUM  minimum number of kills after a checkpoint was written; further kills wait for one [0]
 #   SAMPLES  per pixel; enough for a render of a few seconds [400]
 set -uo pipefail
 export LC_ALL=C
@@ -31,9 +31,13 @@ cd "$work/again" || exit 1
 begin=$(date +%s%N)
 "${command[@]}" >out 2>&1 &
 run=$!
-while [ ! -e v.film ] && kill -0 "$run" 2>/dev/null; do
-  sleep 0.02
-done
+# wait_for_checkpoint: waits until the render has written a checkpoint or ended.
+wait_for_checkpoint() {
+  while [ ! -e v.film ] && kill -0 "$run" 2>/dev/null; do
+    sleep 0.02
+  done
+}
+wait_for_checkpoint
 first=$((($(date +%s%N) - begin) / 1000000))
 kill -9 "$run" 2>/dev/null
 wait "$run" 2>/dev/null
@@ -50,11 +54,14 @@ check_results() {
   fi
   rm -f v.exr v.film
 }
-# A busy machine may write no checkpoint for long, so up to ten times as many kills are allowed.
-while [ "$killed" -lt "$kills" ] || { [ "$after" -lt "$minimum" ] && [ "$killed" -lt $((10 * kills)) ]; }; do
+while [ "$killed" -lt "$kills" ] || [ "$after" -lt "$minimum" ]; do
   "${command[@]}" >out 2>&1 &
   run=$!
-  sleep "$(awk -v r="$RANDOM" -v first="$first" 'BEGIN { print 0.1 + 1.5 * r / 32768 * first / 1000 }')"
+  if [ "$killed" -lt "$kills" ]; then
+    sleep "$(awk -v r="$RANDOM" -v first="$first" 'BEGIN { print 0.1 + 1.5 * r / 32768 * first / 1000 }')"
+  else # on a busy machine, all random times may have been too early
+    wait_for_checkpoint
+  fi
   if kill -9 "$run" 2>/dev/null; then
     [ -e v.film ] && after=$((after + 1))
     killed=$((killed + 1))

@@ -26,7 +26,7 @@ fail() {
 run_ranks() {
   local ranks=$1
   shift
-  timeout 120 mpirun --oversubscribe --bind-to none -n "$ranks" "$@"
+  timeout 600 mpirun --oversubscribe --bind-to none -n "$ranks" "$@"
 }
 
 # enter_folder NAME: enters a new folder with a volume of 4^3 voxels.
@@ -56,12 +56,10 @@ find_rank() {
 start_ranks() {
   run_ranks 2 "$program_mpi" "$@" >out 2>&1 &
   run=$!
-  local tries
-  for tries in $(seq 200); do
-    [ -e v.film ] && return
+  until [ -e v.film ]; do
+    kill -0 "$run" 2>/dev/null || { fail "no checkpoint: $(cat out)"; return; }
     sleep 0.05
   done
-  fail "no checkpoint: $(cat out)"
 }
 
 # wait_for_run: waits for the job of start_ranks; sets status.
@@ -87,15 +85,13 @@ done
 
 # Only rank 0 reads files, so the other rank can run in a folder without them.
 enter_folder elsewhere
-timeout 120 mpirun --oversubscribe --bind-to none -n 1 "$program_mpi" "${samples[@]}" : \
+timeout 600 mpirun --oversubscribe --bind-to none -n 1 "$program_mpi" "${samples[@]}" : \
   -n 1 --wdir / "$program_mpi" "${samples[@]}" >out 2>&1 || fail "files of rank 0: $(cat out)"
 cmp ../samples-alone/v.exr v.exr || fail 'files of rank 0: the image differs'
 
 enter_folder seconds
-start=$SECONDS
-run_ranks 2 "$program_mpi" volume.nrrd --size 64x64 --seconds 1 --threads 1 --progress none --output v.exr >out 2>&1 ||
-  fail "--seconds: $(cat out)"
-[ $((SECONDS - start)) -le 20 ] || fail "--seconds 1 took $((SECONDS - start)) s"
+run_ranks 2 "$program_mpi" volume.nrrd --size 64x64 --samples 100000000 --seconds 1 --threads 1 --progress none \
+  --output v.exr >out 2>&1 || fail "--seconds: $(cat out)" # the samples alone would take days
 
 long=(volume.nrrd --size 64x64 --samples 250 --threads 1 --progress none --checkpoint v.film --output v.exr)
 enter_folder long-alone
@@ -119,7 +115,7 @@ wait_for_run
 
 enter_folder refused
 status=0
-timeout 120 mpirun --oversubscribe --bind-to none -n 1 -x FENESTRA_INSTRUCTIONS=SSE4 "$program_mpi" "${samples[@]}" : \
+timeout 600 mpirun --oversubscribe --bind-to none -n 1 -x FENESTRA_INSTRUCTIONS=SSE4 "$program_mpi" "${samples[@]}" : \
   -n 1 -x FENESTRA_INSTRUCTIONS=SCALAR "$program_mpi" "${samples[@]}" >out 2>&1 || status=$?
 { [ "$status" -eq 2 ] && grep -q 'rank 1 is .*, rank 0 is ' out; } ||
   fail "different instruction sets end with status $status: $(cat out)"

@@ -1,7 +1,6 @@
 // Renders and previews as the extension runs them, with the real renderer: their output and how
 // they end.
 
-#include "RunSettings.h"
 #include "TemporaryFolder.h"
 
 #include "qFenestraCapabilities.h"
@@ -26,12 +25,10 @@ namespace {
 using Kind = qFenestraOutcome::Kind;
 
 const QString program = FENESTRA_EXECUTABLE;
-const int timeoutMs = 30000 * static_cast<int>(testing::slowdownFactor());
-const int maxStopMs =
-    1000 * static_cast<int>(testing::slowdownFactor()); ///< ms; 200 on an idle machine
 
-/// Runs the event loop until the condition holds; false after timeoutMs.
+/// Runs the event loop until the condition holds; false after minutes, as of a program that hangs.
 bool waitFor(const std::function<bool()>& condition) {
+  constexpr int timeoutMs = 300'000;
   QElapsedTimer watch;
   watch.start();
   while (!condition()) {
@@ -107,18 +104,13 @@ TEST_F(SlicerProcess, QueueRunsJobsInOrder) {
 TEST_F(SlicerProcess, StopKeepsFinishedPassesAndSkipsWaitingJobs) {
   qFenestraQueue queue(program);
   const SignalRecorder recorder(queue);
-  queue.add(job(1, {"--samples", "3000000", "--output", "long.png"}));
+  queue.add(job(1, {"--samples", "100000000", "--output", "long.png"})); // hours
   queue.add(job(2, {"--output", "never.png"}));
   queue.add(job(3, {"--samples", "1", "--output", "after.png"}));
   ASSERT_TRUE(
       waitFor([&] { return !recorder.progress.empty() && recorder.progress.back() > 0.0; }));
   queue.stop(2);
   queue.stop(1);
-  QElapsedTimer watch;
-  watch.start();
-  ASSERT_TRUE(waitFor([&] { return recorder.ended.size() >= 2; }));
-  std::cout << "stopped within " << watch.elapsed() << " ms\n";
-  EXPECT_LT(watch.elapsed(), maxStopMs);
   ASSERT_TRUE(waitFor([&] { return recorder.ended.size() == 3; }));
   EXPECT_EQ(recorder.ended[0].id, 2);
   EXPECT_EQ(recorder.ended[1].id, 1);
@@ -369,12 +361,11 @@ TEST_F(SlicerPreview, RefusedChangeKeepsThePreviewRunning) {
 TEST_F(SlicerPreview, StopReturnsImmediately) {
   start("100000000");
   ASSERT_TRUE(waitFor([this] { return !images.empty(); }));
-  QElapsedTimer watch;
-  watch.start();
   preview.stop();
-  std::cout << "stopped within " << watch.elapsed() << " ms\n";
-  EXPECT_LT(watch.elapsed(), maxStopMs);
   EXPECT_FALSE(preview.running());
+  const auto children = preview.findChildren<qFenestraProgram*>();
+  ASSERT_EQ(children.size(), 1);
+  EXPECT_EQ(children[0]->state(), QProcess::Running) << "stop() has waited for the child";
   // The child ends on its own, without further signals.
   EXPECT_TRUE(waitFor([this] { return preview.findChildren<qFenestraProgram*>().isEmpty(); }));
   EXPECT_TRUE(outcomes.empty());

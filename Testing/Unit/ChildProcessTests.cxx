@@ -1,7 +1,5 @@
 #include "io/ChildProcess.h"
 
-#include "base/Stopwatch.h"
-
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -9,6 +7,7 @@
 #include <thread>
 
 #include <fcntl.h>
+#include <unistd.h>
 
 namespace fenestra::ChildProcessTests {
 namespace {
@@ -19,8 +18,7 @@ std::vector<std::string> makeArguments(const std::string& testCase) {
 }
 
 void waitFor(ChildProcess& child) {
-  const Stopwatch watch;
-  while (!child.hasEnded() && watch.seconds() < 30.0)
+  while (!child.hasEnded())
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
@@ -35,7 +33,8 @@ TEST(ChildProcess, DISABLED_Crashes) {
   ::kill(::getpid(), SIGKILL);
 }
 TEST(ChildProcess, DISABLED_Sleeps) {
-  std::this_thread::sleep_for(std::chrono::minutes(1));
+  for (;;)
+    ::pause();
 }
 /// Standard input is empty, and no file of the parent is open.
 TEST(ChildProcess, DISABLED_InheritsNoFiles) {
@@ -62,13 +61,11 @@ TEST(ChildProcess, ReportsHowItEnded) {
 }
 
 TEST(ChildProcess, EndsOnASignalAndWhenDestroyed) {
-  const Stopwatch watch;
   ChildProcess child(makeArguments("Sleeps"), 4);
   child.send(SIGTERM);
   waitFor(child);
   EXPECT_EQ(child.status(), 128 + SIGTERM);
   { const ChildProcess other(makeArguments("Sleeps"), 4); }
-  EXPECT_LT(watch.seconds(), 30.0);
 }
 
 } // namespace

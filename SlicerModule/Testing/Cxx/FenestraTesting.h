@@ -21,12 +21,12 @@
 
 namespace FenestraTesting {
 
-/// Processes Qt's events until the condition holds, for at most 30 s; returns whether it holds.
+/// Processes Qt's events until the condition holds; returns whether it holds, false after minutes.
 template <typename Condition>
 bool waitFor(Condition&& condition) {
   QElapsedTimer watch;
   watch.start();
-  while (!condition() && watch.elapsed() < 30000)
+  while (!condition() && watch.elapsed() < 300000)
     QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
   return condition();
 }
