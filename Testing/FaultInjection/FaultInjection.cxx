@@ -1,5 +1,6 @@
 // Fault injection: runs each request once per possible fault, and reports violated invariants.
-// usage: FaultInjection FENESTRA [RUNS]                       all, or RUNS per kind, evenly spaced
+// usage: FaultInjection FENESTRA                              all
+//        FaultInjection FENESTRA REQUEST RUNS                 RUNS per kind, evenly spaced
 //        FaultInjection FENESTRA REQUEST KIND NUMBER [VALUE]  one, to reproduce a violation
 // Prints CSV, and violations to standard error. Exit status 1 if there is a violation, 77 if
 // processes cannot be traced.
@@ -15,6 +16,8 @@
 #include <exception>
 #include <limits>
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -229,8 +232,9 @@ int runOne(const Case& testCase, const Tools& tools) {
 }
 
 int runFaults(int count, char** words) {
-  if (count != 2 && count != 3 && count != 5 && count != 6) {
-    std::fputs("usage: FaultInjection FENESTRA [RUNS | REQUEST KIND NUMBER [VALUE]]\n", stderr);
+  if (count < 2 || count == 3 || count > 6) {
+    std::fputs("usage: FaultInjection FENESTRA [REQUEST RUNS | REQUEST KIND NUMBER [VALUE]]\n",
+               stderr);
     return 2;
   }
   if (!canTrace()) {
@@ -240,12 +244,15 @@ int runFaults(int count, char** words) {
   const Tools tools = {std::filesystem::canonical(words[1]), FENESTRA_PRELOAD, FENESTRA_TEST_DATA};
   std::vector<Baseline> subjects;
   for (const Request& request : requests())
-    subjects.push_back(recordBaseline(request, tools));
-  if (count > 3) {
+    if (count == 2 || request.name == words[2])
+      subjects.push_back(recordBaseline(request, tools));
+  if (subjects.empty())
+    throw std::runtime_error(std::string(words[2]) + ": no such request");
+  if (count > 4) {
     const std::optional<Case> testCase = findCase(subjects, words + 2, count - 2);
     return testCase ? runOne(*testCase, tools) : 2;
   }
-  const long maxCount = count == 3 ? std::atol(words[2]) : std::numeric_limits<long>::max();
+  const long maxCount = count == 2 ? std::numeric_limits<long>::max() : std::atol(words[3]);
   std::vector<Case> cases;
   for (const Baseline& subject : subjects)
     for (const FaultKind& kind : kinds) {
@@ -253,7 +260,7 @@ int runFaults(int count, char** words) {
       cases.insert(cases.end(), more.begin(), more.end());
     }
   // With RUNS it is a short test that runs in parallel with others.
-  const unsigned threads = count == 3 ? 1 : std::max(1U, std::thread::hardware_concurrency());
+  const unsigned threads = count == 4 ? 1 : std::max(1U, std::thread::hardware_concurrency());
   return print(cases, runAll(cases, tools, threads)) ? 0 : 1;
 }
 

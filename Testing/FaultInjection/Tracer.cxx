@@ -29,7 +29,8 @@ extern char** environ;
 namespace fenestra::faults {
 namespace {
 
-constexpr auto timeLimit = std::chrono::seconds(20); ///< time limit per run
+constexpr rlim_t cpuLimit = 20;                     ///< limit of a run's processor time in seconds
+constexpr auto hangLimit = std::chrono::minutes(5); ///< of a run that waits, even on a busy machine
 
 /// File in memory.
 class MemoryFile {
@@ -78,13 +79,13 @@ private:
   Page* m_page;
 };
 
-/// Kills a process at the time limit.
+/// Kills a process at hangLimit.
 class Watchdog {
 public:
   explicit Watchdog(pid_t process)
       : m_thread([this, process] {
           std::unique_lock lock(m_mutex);
-          if (m_wake.wait_for(lock, timeLimit, [this] { return m_ended; }))
+          if (m_wake.wait_for(lock, hangLimit, [this] { return m_ended; }))
             return;
           m_hasKilled = true;
           ::kill(process, SIGKILL);
@@ -143,6 +144,8 @@ struct Start {
     ::signal(stop, SIG_DFL);
   if (fault.kind == Fault::Kind::ignored)
     ::signal(fault.value, SIG_IGN);
+  const rlimit processorTime = {cpuLimit, cpuLimit}; // ends the process by SIGKILL
+  ::setrlimit(RLIMIT_CPU, &processorTime);
   const bool isReady = ::chdir(start.folder.c_str()) == 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
                        ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(err, STDERR_FILENO) >= 0;
   if (isReady && traced)
@@ -178,6 +181,8 @@ public:
         ::ptrace(PTRACE_CONT, thread, nullptr, handleStop(thread, state));
       else if (thread == m_root) {
         m_outcome.peakKilobytes = usage.ru_maxrss;
+        m_outcome.hasTimedOut =
+            usage.ru_utime.tv_sec + usage.ru_stime.tv_sec >= time_t{cpuLimit} - 1;
         onEnd(state);
       }
     }
@@ -309,7 +314,7 @@ Outcome run(const Command& command, const Fault& fault) {
     throw std::runtime_error("cannot start or trace a process");
   Watchdog watchdog(child);
   Trace(child, fault, outcome).follow();
-  outcome.hasTimedOut = watchdog.end();
+  outcome.hasTimedOut |= watchdog.end();
   outcome.errors = err.content();
   const std::string root = command.folder.parent_path().string() + "/";
   if (const std::size_t at = outcome.place.find(root); at != outcome.place.npos)

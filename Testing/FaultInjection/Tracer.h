@@ -33,7 +33,7 @@ struct Command {
 struct Outcome {
   int status = -1;          ///< exit status; -1 if a signal ended the process
   int signal = 0;           ///< signal that ended the process; 0: none
-  bool hasTimedOut = false; ///< killed at the time limit
+  bool hasTimedOut = false; ///< killed at the limit of processor time, or because it hangs
   std::string errors;       ///< standard error
   std::string place;        ///< call at which the fault was injected; empty: none
   long calls = 0, changes = 0, allocations = 0; ///< counts; calls and changes only if traced
