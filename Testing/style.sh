@@ -9,6 +9,11 @@ git ls-files '*.h' '*.cxx' | xargs clang-format --dry-run --Werror || die "run c
 twice=$(git ls-files 'Renderer/*.h' | xargs grep -hoE '^(struct|class) \w+( final)?( :| \{)' | awk '{ print $2 }' |
   sort | uniq -d)
 [ -z "$twice" ] || die "two types have the same name, which the linker would merge: $twice"
+# Names reserved for the compiler, except those that it or the C library defines and fish's helper functions.
+reserved=$(git grep -noE '\b(_[A-Z]|\w*__)\w*' -- 'Renderer/*.h' 'Renderer/*.cxx' |
+  grep -vE ':(__(restrict|has_feature|attribute__|builtin_\w+|SANITIZE_\w+|rlimit_resource|fenestra_is)|_SC_\w+|_Exit|_+)$' ||
+  true)
+[ -z "$reserved" ] || die "names reserved for the compiler: $reserved"
 say "spelling"
 bash Testing/spelling.sh || die "the words above have another form here: see Testing/spelling.txt"
 say "clang-tidy"
