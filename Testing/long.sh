@@ -164,8 +164,9 @@ stage_tsan() {
 stage_clang() {
   install_packages clang
   (cd "$top" && cmake --preset dev -B build-clang -DCMAKE_CXX_COMPILER=clang++ >/dev/null &&
-    cmake --build build-clang --target all MicroBenchmarks ChangeBenchmark LoadingBenchmark)
-  print_table clang run_labels "$top/build-clang" "${labels[@]}"
+    cmake --build build-clang --target all MicroBenchmarks ChangeBenchmark LoadingBenchmark CorruptedFiles \
+      MakeSamples MakeBaselines)
+  print_table clang run_labels "$top/build-clang" "${labels[@]}" benchmark
 }
 
 stage_headers() {
@@ -177,6 +178,7 @@ stage_headers() {
 
 stage_faults() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
+  cmake --build "$top/build" --target CorruptedFiles
   local program=$top/build/bin/fenestra log
   log=$logs/fault-injection.log
   print_table fault-injection "$top/build/bin/FaultInjection" "$program" 2> >(tee "$log" >&2) ||
