@@ -8,6 +8,7 @@
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/ErrorAdvice.h"
+#include "program/Messages.h"
 #include "program/ProgressView.h"
 #include "program/Stop.h"
 #include "program/UsageError.h"
@@ -17,7 +18,6 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <iostream>
 #include <memory>
 #include <thread>
 
@@ -41,6 +41,7 @@ struct BatchOptions {
   RowShard shard;
   bool restart = false;
   ProgressMode progress = ProgressMode::automatic;
+  bool quiet = false, verbose = false;
 };
 
 /// Renders the unfinished rows, several at a time.
@@ -169,12 +170,11 @@ private:
     m_seconds += outcome.seconds;
     if (m_view.mode() == ProgressMode::xml)
       return;
-    m_view.erase();
     const std::string& name = m_results.rows[row].name;
     if (outcome.state == State::failed)
-      std::cerr << "fenestra: warning: " << toOneLine(name + ": " + outcome.error) << '\n';
-    else if (outcome.state == State::done)
-      std::cout << toOneLine(name) << ": " << toString(outcome.seconds, 3) << " s" << std::endl;
+      printWarning(name + ": " + outcome.error);
+    else if (outcome.state == State::done && m_options.verbose)
+      printLine(concat(name, ": ", toString(outcome.seconds, 3), " s"));
   }
 
   /// Sends SIGTERM to all workers once; they write what they have rendered.
@@ -237,7 +237,10 @@ BatchOptions makeBatchOptions(const OptionValues& values) {
   options.workers = static_cast<int>(values.integer("workers").value_or(1));
   options.shard = parseRowShard(values);
   options.restart = values.has("restart");
-  options.progress = readOptions(values).progress;
+  const RenderOptions shared = resolveProgress(readOptions(values));
+  options.progress = shared.progress;
+  options.quiet = shared.quiet;
+  options.verbose = shared.verbose;
   return options;
 }
 
@@ -275,12 +278,11 @@ int batchCommand(int argc, char** argv, int first) {
   if (isComplete)
     writeResults(results, outputs);
   outputs.commit();
-  std::cout << toOneLine(concat(
-                   results.folder, ": ", results.count(State::done), " of ", batch.rows(),
-                   " rows done, ", batch.rendered(), " rendered now, ",
-                   toString(watch.seconds(), 3), " s",
-                   batch.isStopped() ? " (stopped on request; the same command resumes)" : ""))
-            << std::endl;
+  if (!options.quiet)
+    printLine(concat(results.folder, ": ", results.count(State::done), " of ", batch.rows(),
+                     " rows done, ", batch.rendered(), " rendered now, ",
+                     toString(watch.seconds(), 3), " s",
+                     batch.isStopped() ? " (stopped on request; the same command resumes)" : ""));
   if (batch.isStopped())
     return stopStatus();
   for (std::size_t row = 0; row < results.rows.size(); ++row)

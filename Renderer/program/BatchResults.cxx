@@ -48,7 +48,7 @@ bool isSummary(const fs::path& path) {
   return std::getline(file, line) && line.starts_with(head.substr(0, head.size() - 2)); // CR LF
 }
 
-/// Numbers of a row's statistics (--stats) by JSON path, as "samplesPerPixel.mean"; lists are
+/// Numbers of a row's statistics (--stats-json) by JSON path, as "samplesPerPixel.mean"; lists are
 /// omitted.
 using Measures = std::map<std::string, double>;
 

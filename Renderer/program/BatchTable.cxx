@@ -5,6 +5,7 @@
 #include "io/JsonNode.h"
 #include "io/MessageText.h"
 #include "program/CommandLine.h"
+#include "program/Quality.h"
 
 #include <algorithm>
 #include <set>
@@ -19,7 +20,9 @@ constexpr const char* nameColumn = "name";
 constexpr const char* inputColumn = "input";
 
 const Option batchTable[] = {
-    {"output", "DIR", batchGroup,
+    {{"output", 'o'},
+     "DIR",
+     batchGroup,
      "Folder for one folder per row, study.csv and study.png [the table's name without .csv]"},
     {"workers", "N", batchGroup, "Rows rendered at a time, 1 to 256; they divide the threads",
      ValueSpec::integer(1, 256).withDefault("1")},
@@ -62,14 +65,15 @@ std::vector<const Option*> parseColumns(const CsvRecord& head, const std::string
   std::set<std::string> names;
   for (const std::string& name : head.fields) {
     const Option* const option = findOption(renderSyntax.options, name);
-    if (std::ranges::find(known, name) == known.end()) {
+    const bool isKnown = option ? isImageOption(*option) : std::ranges::count(known, name) > 0;
+    if (!isKnown) {
       const std::string likely = findNearest(toLower(name), known);
       throw inputError(source, "line ", head.line, ": '", fenestra::sanitize(name),
                        "' is no valid column",
                        likely.empty() ? "; columns are name, input and options of fenestra render"
                                       : "; did you mean " + likely + "?");
     }
-    if (!names.insert(name).second && !(option && canHaveColumns(*option)))
+    if (!names.insert(option ? option->name : name).second && !(option && canHaveColumns(*option)))
       throw inputError(source, "line ", head.line, ": duplicate column '", name, "'; remove one");
     columns.push_back(option);
   }
@@ -139,6 +143,8 @@ private:
       row.arguments.push_back(
           concat("--", option->name, "=", namesFile ? resolveFile(cell, m_folder) : cell));
       others.remove(option->name);
+      if (option->name == "quality")
+        removeQualityOptions(others);
       if (!namesFile || cell.find_first_of("./") == cell.npos)
         row.label += (row.label.empty() ? "" : ", ") + cell;
     }
@@ -156,10 +162,10 @@ private:
 
 const CommandSyntax& batchSyntax() {
   static const std::vector<Option> options = [] {
+    constexpr std::string_view shared[] = {"layers", "threads", "progress", "quiet", "verbose"};
     std::vector<Option> all(std::begin(batchTable), std::end(batchTable));
     for (const Option& option : renderSyntax.options)
-      if (isImageOption(option) || option.name == "layers" || option.name == "threads" ||
-          option.name == "progress")
+      if (isImageOption(option) || std::ranges::count(shared, option.name) > 0)
         all.push_back(option);
     return all;
   }();
@@ -176,6 +182,9 @@ const CommandSyntax& batchSyntax() {
       "rows whose cell is empty.",
       {{"TABLE", "Table of the rows (.csv); its first line names the columns"}},
       options,
+      {},
+      "Render a table of cases, one per row",
+      "batch cases.csv --output results --workers 2 --quality normal",
   };
   return syntax;
 }

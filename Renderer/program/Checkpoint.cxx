@@ -35,14 +35,18 @@ ordered_json collectOptions(const OptionValues& options, const fs::path& folder,
   return collected;
 }
 
-/// Values of a stored option, with new spellings for those of version 0.1.
-json resolveAliases(const json& options, const std::string& name) {
-  json values = options.value(name, json());
-  if (const Option* option = findOption(renderSyntax.options, name); option && values.is_array())
-    for (json& value : values)
-      if (value.is_string())
-        value = option->resolveAlias(value.get<std::string>());
-  return values;
+/// Stored options, with the new spellings of names and values from version 0.1.
+json resolveAliases(const json& options) {
+  json resolved = json::object();
+  for (const auto& [name, values] : options.items()) {
+    const Option* const option = findOption(renderSyntax.options, name);
+    json& target = resolved[option ? option->name : name] = values;
+    if (option && target.is_array())
+      for (json& value : target)
+        if (value.is_string())
+          value = option->resolveAlias(value.get<std::string>());
+  }
+  return resolved;
 }
 
 std::string joinValues(const json& options, const std::string& name) {
@@ -54,13 +58,14 @@ std::string joinValues(const json& options, const std::string& name) {
 }
 
 /// First option in which two objects of options differ; empty: none.
-std::string findOptionDifference(const json& stored, const json& current) {
+std::string findOptionDifference(const json& storedOptions, const json& currentOptions) {
+  const json stored = resolveAliases(storedOptions), current = resolveAliases(currentOptions);
   std::set<std::string> names;
   for (const json* options : {&stored, &current})
     for (const auto& [name, values] : options->items())
       names.insert(name);
   for (const std::string& name : names)
-    if (resolveAliases(stored, name) != resolveAliases(current, name))
+    if (stored.value(name, json()) != current.value(name, json()))
       return concat(name == "INPUT" ? "" : "--", name, " was ", joinValues(stored, name), ", is ",
                     joinValues(current, name));
   return "";

@@ -1,7 +1,12 @@
 #include "program/CommandLine.h"
 
 #include "base/Error.h"
+#include "files/images/ImageFormat.h"
+#include "io/MessageText.h"
 #include "program/Commands.h"
+#include "program/Help.h"
+#include "program/Messages.h"
+#include "program/RenderOptions.h"
 #include "program/UsageError.h"
 #include "program/about/About.h"
 
@@ -13,68 +18,58 @@ namespace fenestra {
 namespace {
 
 const Option commonTable[] = {
-    {"help", "", "", "Print this help and exit"},
+    {OptionNames("help", 'h'), "", "", "Print this help and exit"},
     {"version", "", "",
      "Print version, commit, compiler, instruction set, libraries and license (with --json as "
      "JSON) and exit"},
 };
 
-constexpr std::size_t pageWidth = 80,
-                      textColumn = 30; ///< characters per line, and before descriptions
-
-/// A name and its description, in two columns.
-std::string formatEntry(std::string_view name, std::string_view text) {
-  const std::string margin(textColumn, ' ');
-  std::string head = concat("  ", name);
-  if (head.size() < textColumn)
-    head.resize(textColumn, ' ');
-  else
-    head.append("\n").append(margin);
-  return concat(head, replaceAll(wrapLines(text, pageWidth - textColumn), "\n", "\n" + margin),
-                "\n");
-}
-
-/// Summary, positional arguments, and options by group.
-std::string formatHelp(const CommandSyntax& syntax) {
-  std::string usage = "Usage: fenestra " + syntax.name, names;
-  for (const Positional& positional : syntax.positionals) {
-    usage += " " + positional.name + (positional.canRepeat ? "..." : "");
-    names += formatEntry(positional.name, positional.description);
-  }
-  std::string text =
-      concat(wrapLines(syntax.summary, pageWidth), "\n\n", usage, " [OPTIONS]\n\n", names);
-  for (const Option& option : commonOptions)
-    text += formatEntry("--" + option.name, option.description);
-  std::string group;
-  for (const Option& option : listOptions(syntax)) {
-    if (option.group != group)
-      text += "\n" + option.group + ":\n";
-    group = option.group;
-    text += formatEntry(concat("--", option.name, option.isSwitch() ? "" : " ", option.placeholder),
-                        option.help());
-  }
-  return text;
-}
-
 std::string formatHelpHint(const CommandSyntax& syntax) {
   return concat(" (see fenestra ", syntax.name, " --help)");
 }
 
+/// Options with short forms, as "-s, -o".
+std::string listShortForms(const CommandSyntax& syntax) {
+  std::vector<std::string> forms = {"-h"};
+  for (const Option& option : listOptions(syntax))
+    if (option.letter)
+      forms.push_back(concat('-', option.letter));
+  return join(forms, ", ");
+}
+
+/// Fix for an unknown option; empty: none is known.
+std::string suggestOption(const CommandSyntax& syntax, std::string_view given) {
+  const std::string_view name =
+      given.substr(std::min(given.find_first_not_of('-'), given.size()), given.find('='));
+  if (name == "i" || name == "input")
+    return "; write the input without an option";
+  std::vector<Option> options = listOptions(syntax);
+  std::ranges::copy(commonOptions, std::back_inserter(options));
+  const std::string bare(name.substr(0, name.find('=')));
+  const std::string likely = findLikelyOption(toLower(bare), options);
+  if (!likely.empty())
+    return concat("; did you mean --", likely, "?");
+  if (given.starts_with("--") || name.empty())
+    return "";
+  if (const Option* const option = findOption(options, name[0]); option && name.size() > 1)
+    return option->isSwitch() ? concat("; write short options separately, as -", name[0])
+                              : concat("; write -", name[0], " ", option->placeholder);
+  return concat("; short options are ", listShortForms(syntax));
+}
+
 Error makeUnknownOptionError(const CommandSyntax& syntax, std::string_view given) {
-  given = given.substr(0, given.find('='));
-  std::vector<std::string> names = listNames(commonOptions);
-  std::ranges::copy(listNames(listOptions(syntax)), std::back_inserter(names));
-  const std::string_view word = given.substr(std::min(given.find_first_not_of('-'), given.size()));
-  const std::string likely = findNearest(toLower(word), names);
-  return usageError(given, ": unknown option",
-                    likely.empty() ? "" : concat("; did you mean --", likely, "?"),
-                    formatHelpHint(syntax));
+  return usageError(toOneLine(std::string(given.substr(0, given.find('=')))), ": unknown option",
+                    suggestOption(syntax, given), formatHelpHint(syntax));
 }
 
 Error makeExtraArgumentError(const CommandSyntax& syntax, std::string_view given) {
+  const Option* const output = findOption(syntax.options, "output");
+  const bool isImage = output && output->canNameFile() && findImageFormat(given);
   return usageError("'", given, "': unexpected argument after ",
                     join(syntax.positionals, " and ", std::mem_fn(&Positional::name)),
-                    "; quote names that contain blanks", formatHelpHint(syntax));
+                    isImage ? "; to write an image, add -o before it"
+                            : "; quote names that contain blanks",
+                    formatHelpHint(syntax));
 }
 
 using Arguments = std::span<const std::string_view>;
@@ -88,22 +83,21 @@ std::string_view takeFirst(Arguments& words) {
 /// Parses the option `word`. Its value is in the same argument or the next.
 void parseOption(const CommandSyntax& syntax, std::string_view word, Arguments& words,
                  OptionValues& values) {
-  const std::size_t equals = word.find('=');
-  const bool hasValue = equals != word.npos;
-  const Option* const option =
-      word.starts_with("--") ? findOption(syntax.options, word.substr(2, equals - 2)) : nullptr;
-  if (!option)
+  const std::optional<OptionWord> parsed = parseOptionWord(syntax.options, word);
+  if (!parsed)
     throw makeUnknownOptionError(syntax, word);
-  if (option->isSwitch() && hasValue)
+  const auto& [option, value] = *parsed;
+  if (option->isSwitch() && value)
     throw usageError("--", option->name, ": takes no value; omit it");
   if (option->isSwitch())
     return values.add(option->name, "");
-  const bool isMissing =
-      hasValue ? equals + 1 == word.size() : words.empty() || words.front().starts_with("--");
-  if (isMissing || (!hasValue && words.front().empty()))
+  const bool isMissing = value ? value->empty()
+                               : words.empty() || words.front().starts_with("--") ||
+                                     parseOptionWord(syntax.options, words.front());
+  if (isMissing || (!value && words.front().empty()))
     throw usageError("--", option->name, ": value is ", isMissing ? "missing" : "empty",
                      "; write --", option->name, " ", option->placeholder);
-  values.add(option->name, std::string(hasValue ? word.substr(equals + 1) : takeFirst(words)));
+  values.add(option->name, std::string(value ? *value : takeFirst(words)));
 }
 
 OptionValues parseArguments(const CommandSyntax& syntax, Arguments words) {
@@ -132,6 +126,14 @@ OptionValues parseArguments(const CommandSyntax& syntax, Arguments words) {
   return values;
 }
 
+/// Text for `fenestra --help [TOPIC]`. `isFirst`: nothing precedes --help, so the next word must be
+/// a topic.
+std::string helpAfter(std::span<const std::string_view> words, bool isFirst) {
+  const bool hasTopic =
+      !words.empty() && (isFirst ? !words.front().starts_with('-') : isHelpTopic(words.front()));
+  return hasTopic ? makeTopicHelp(words.front()) : makeOverview();
+}
+
 /// Optimal string alignment distance: insertions, deletions, substitutions, adjacent swaps.
 std::size_t computeEditDistance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
@@ -153,12 +155,6 @@ std::size_t computeEditDistance(std::string_view a, std::string_view b) {
 
 const std::span<const Option> commonOptions = commonTable;
 
-std::vector<std::string> listNames(std::span<const Option> options) {
-  std::vector<std::string> names;
-  std::ranges::transform(options, std::back_inserter(names), &Option::name);
-  return names;
-}
-
 std::string findNearest(std::string_view word, std::span<const std::string> candidates) {
   constexpr std::size_t longest = 32; // option names are shorter; a path may not be
   std::string best;
@@ -177,15 +173,31 @@ std::string findNearest(std::string_view word, std::span<const std::string> cand
   return best;
 }
 
+std::string findLikelyOption(std::string_view word, std::span<const Option> options) {
+  std::vector<std::string> names;
+  for (const Option& option : options)
+    names.insert(names.end(), {option.name, option.oneWord});
+  const std::string likely = findNearest(word, names);
+  return likely.empty() ? "" : findOption(options, likely)->name;
+}
+
 std::optional<OptionValues> parseCommandLine(const CommandSyntax& syntax, int argc, char** argv,
                                              int first) {
   const std::vector<std::string_view> words(argv + first, argv + argc);
-  const auto hasArgument = [&words](std::string_view word) {
-    return std::ranges::find(words, word) != words.end();
+  const auto end = std::ranges::find(words, "--");
+  const auto help = std::find_if(
+      words.begin(), end, [](std::string_view word) { return word == "--help" || word == "-h"; });
+  const auto hasArgument = [&](std::string_view word) {
+    return std::find(words.begin(), end, word) != end;
   };
-  if (hasArgument("--help")) {
-    std::cout << formatHelp(syntax) << std::flush;
+  if (help != end) {
+    allowClosedOutput();
+    const bool isOverview = &syntax == &renderSyntax && first == 1;
+    std::cout << (isOverview ? helpAfter({help + 1, words.end()}, help == words.begin())
+                             : makeCommandHelp(syntax))
+              << std::flush;
   } else if (hasArgument("--version")) {
+    allowClosedOutput();
     pinInstructions();
     std::cout << (hasArgument("--json") ? aboutJson() : aboutText()) << std::flush;
   } else {

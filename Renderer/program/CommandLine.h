@@ -7,13 +7,15 @@
 
 namespace fenestra {
 
-/// Switches that every command accepts: --help and --version.
+/// Switches that every command accepts: --help (-h) and --version.
 extern const std::span<const Option> commonOptions;
 
-/// Parses argv[first …]: "--name value" or "--name=value", mixed with positional arguments; only
-/// positional ones after "--". A value may begin with one dash, as negative numbers do. If --help
-/// or --version is present, prints that text (the version as JSON with --json) and returns nullopt,
-/// even if other arguments are invalid. Throws Error (usage).
+/// Parses argv[first …]: "--name value", "--name=value" or "-x value" (of an integer also "-x4"),
+/// mixed with positional arguments; only positional ones after "--". A value may begin with one
+/// dash, as negative numbers do, unless it is a short option. If --help or --version is present,
+/// prints that text (the version as JSON with --json; for `fenestra --help` without a command the
+/// overview, or the help on the topic that follows) and returns nullopt, even if other arguments
+/// are invalid. Throws Error (usage).
 std::optional<OptionValues> parseCommandLine(const CommandSyntax& syntax, int argc, char** argv,
                                              int first);
 
@@ -24,7 +26,8 @@ inline bool isSameOption(const Option& a, const Option& b) {
 
 /// Candidate that `word` probably misspells or abbreviates; empty: none.
 std::string findNearest(std::string_view word, std::span<const std::string> candidates);
-std::vector<std::string> listNames(std::span<const Option> options);
+/// Canonical name of the option that `word` probably misspells; empty: none.
+std::string findLikelyOption(std::string_view word, std::span<const Option> options);
 
 /// Options that the command accepts, in table order.
 std::vector<Option> listOptions(const CommandSyntax& syntax);

@@ -3,11 +3,14 @@
 #include "base/Error.h"
 #include "program/BatchTable.h"
 #include "program/CommandLine.h"
+#include "program/Help.h"
+#include "program/Messages.h"
 #include "program/RenderOptions.h"
 #include "program/TurntableOptions.h"
 #include "program/UsageError.h"
 
 #include <filesystem>
+#include <iostream>
 
 namespace fenestra {
 namespace {
@@ -15,12 +18,12 @@ namespace {
 constexpr Command subcommands[] = {
     {[]() -> const CommandSyntax& { return renderSyntax; }, renderCommand},
     {inspectSyntax, inspectCommand},
-    {turntableSyntax, turntableCommand},
-    {batchSyntax, batchCommand},
-    {mergeSyntax, mergeCommand},
-    {serveSyntax, serveCommand},
-    {compareSyntax, compareCommand},
     {phantomSyntax, phantomCommand},
+    {compareSyntax, compareCommand},
+    {turntableSyntax, turntableCommand},
+    {serveSyntax, serveCommand},
+    {mergeSyntax, mergeCommand},
+    {batchSyntax, batchCommand},
     {describeSyntax, describeCommand},
 };
 
@@ -43,7 +46,16 @@ std::span<const Command> commands() {
 }
 
 int dispatch(int argc, char** argv) {
-  const std::string_view given = argc > 1 ? argv[1] : "";
+  if (argc <= 1) {
+    std::cerr << makeUsage();
+    return static_cast<int>(ErrorKind::usage);
+  }
+  const std::string_view given = argv[1];
+  if (given == "help") {
+    allowClosedOutput();
+    std::cout << (argc > 2 ? makeTopicHelp(argv[2]) : makeOverview()) << std::flush;
+    return 0;
+  }
   const std::string_view word = given == "study" ? "batch" : given; // its name in version 0.1
   for (const auto& [syntax, run] : commands())
     if (word == syntax().name)

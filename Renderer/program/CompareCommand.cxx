@@ -6,6 +6,7 @@
 #include "image/Compare.h"
 #include "io/InputRegistry.h"
 #include "program/CommandLine.h"
+#include "program/Messages.h"
 
 #include <cstdio>
 
@@ -14,9 +15,9 @@ namespace {
 
 constexpr const char* compareGroup = "Compare";
 const Option compareTable[] = {
-    {"errora", "FILE", compareGroup, "Standard errors of A, if A itself has no error channels"},
-    {"errorb", "FILE", compareGroup, "Standard errors of B, if B itself has no error channels"},
-    {"output", "FILE", compareGroup, "Difference image: .png .tif .exr .nrrd"},
+    {"error-a", "FILE", compareGroup, "Standard errors of A, if A itself has no error channels"},
+    {"error-b", "FILE", compareGroup, "Standard errors of B, if B itself has no error channels"},
+    {OptionNames("output", 'o'), "FILE", compareGroup, "Difference image: .png .tif .exr .nrrd"},
 };
 
 Image readWithError(const OptionValues& values, const char* name, const char* errorOption) {
@@ -28,7 +29,7 @@ Image readWithError(const OptionValues& values, const char* name, const char* er
 
 /// Throws Error before the images are read, not after.
 void declareOutput(const OptionValues& values, Outputs& outputs) {
-  for (const char* name : {"A", "B", "errora", "errorb"})
+  for (const char* name : {"A", "B", "error-a", "error-b"})
     if (const auto input = values.text(name))
       registerInput(*input);
   if (const auto output = values.text("output"))
@@ -75,6 +76,9 @@ const CommandSyntax& compareSyntax() {
       "standard errors.",
       {{"A", "Image: .exr .nrrd .png .tif"}, {"B", "Reference of the same size"}},
       compareTable,
+      {},
+      "Compare two images: error measures and statistics of z",
+      "compare image.exr reference.exr -o difference.png",
   };
   return syntax;
 }
@@ -85,13 +89,14 @@ int compareCommand(int argc, char** argv, int first) {
     return 0;
   Outputs outputs;
   declareOutput(*values, outputs);
-  const Image a = readWithError(*values, "A", "errora");
-  const Image b = readWithError(*values, "B", "errorb");
+  const Image a = readWithError(*values, "A", "error-a");
+  const Image b = readWithError(*values, "B", "error-b");
   print(compareFiles(*values, a, b));
   if (const auto output = values->text("output")) {
     writeImage(differenceImage(a, b), {}, *output, outputs, {DisplayView::standard});
     outputs.commit();
   }
+  allowClosedOutput(); // the text is still in a buffer
   return 0;
 }
 

@@ -38,17 +38,14 @@ std::string joinCommandNames() {
 /// Options of a command, common ones first.
 std::vector<Option> listAllOptions(const CommandSyntax& syntax) {
   std::vector<Option> options(commonOptions.begin(), commonOptions.end());
-  std::ranges::copy(listOptions(syntax), std::back_inserter(options));
+  std::ranges::copy_if(listOptions(syntax), std::back_inserter(options),
+                       [](const Option& option) { return !option.group.empty(); });
   return options;
 }
 
-/// Summary up to the first period, semicolon or colon.
-std::string extractFirstClause(const std::string& summary) {
-  const std::size_t end = std::min({summary.find(". "), summary.find("; "), summary.find(": ")});
-  std::string clause = summary.substr(0, end);
-  if (clause.ends_with('.'))
-    clause.pop_back();
-  return clause;
+/// Long and short form of an option.
+std::string listForms(const Option& option, const char* separator) {
+  return concat("--", option.name, option.letter ? concat(separator, "-", option.letter) : "");
 }
 
 // ---- bash
@@ -98,11 +95,11 @@ std::string formatBashCase(const CommandSyntax& syntax) {
     const auto known =
         std::ranges::find(cases, candidates, &std::pair<Candidates, std::string>::first);
     if (known == cases.end())
-      cases.emplace_back(candidates, "--" + option.name);
+      cases.emplace_back(candidates, listForms(option, " | "));
     else
-      known->second += " | --" + option.name;
+      known->second += " | " + listForms(option, " | ");
   }
-  const auto name = [](const Option& option) { return "--" + option.name; };
+  const auto name = [](const Option& option) { return listForms(option, " "); };
   std::string text = concat("    ", syntax.name, ")\n      flags='", join(options, " ", name),
                             "'\n      case $before in\n");
   for (const auto& [candidates, names] : cases)
@@ -171,11 +168,14 @@ std::string formatZshCase(const CommandSyntax& syntax) {
   };
   for (const Option& option : listAllOptions(syntax)) {
     const std::string help = concat("[", escape(option.help(), "\\]"), "]");
-    if (option.isSwitch())
-      add(concat("--", option.name, help));
-    else
-      add(concat("*--", option.name, "=", help, ":", escape(option.placeholder, "\\:"), ":",
-                 formatZshAction(findCandidates(option))));
+    const std::string value = option.isSwitch()
+                                  ? ""
+                                  : concat(":", escape(option.placeholder, "\\:"), ":",
+                                           formatZshAction(findCandidates(option)));
+    add(concat(option.isSwitch() ? "" : "*", "--", option.name, option.isSwitch() ? "" : "=", help,
+               value));
+    if (option.letter)
+      add(concat(option.isSwitch() ? "" : "*", "-", option.letter, help, value));
   }
   for (const Positional& positional : syntax.positionals)
     add(concat(":", positional.name, ":", formatZshAction(findCandidates(positional))));
@@ -235,7 +235,8 @@ std::string formatFishOptions(std::size_t commandIndex) {
     const Candidates candidates = findCandidates(option);
     const char* const value = option.isSwitch() ? "" : candidates.files ? " -r" : " -x";
     lines += formatFishLine(accepting,
-                            concat(" -l ", option.name, value, formatFishCandidates(candidates)),
+                            concat(option.letter ? concat(" -s ", option.letter) : "", " -l ",
+                                   option.name, value, formatFishCandidates(candidates)),
                             option.help());
   }
   return lines;
@@ -255,8 +256,7 @@ std::string makeZshCompletions() {
   std::string cases;
   for (const Command& command : commands()) {
     const CommandSyntax& syntax = command.syntax();
-    names += concat(
-        "    ", quoteForZsh(concat(syntax.name, ":", extractFirstClause(syntax.summary))), "\n");
+    names += concat("    ", quoteForZsh(concat(syntax.name, ":", syntax.brief)), "\n");
     cases += formatZshCase(syntax);
   }
   return replaceAll(zshBegin, "@COMMANDS@", names) + cases + zshEnd;
@@ -266,7 +266,7 @@ std::string makeFishCompletions() {
   std::string text = replaceAll(fishBegin, "@COMMANDS@", joinCommandNames());
   for (std::size_t i = 0; i < commands().size(); ++i) {
     const CommandSyntax& syntax = commands()[i].syntax();
-    text += formatFishLine("", " -a " + syntax.name, extractFirstClause(syntax.summary));
+    text += formatFishLine("", " -a " + syntax.name, syntax.brief);
     text += formatFishLine(" " + syntax.name,
                            formatFishCandidates(findCandidates(syntax.positionals.front())));
     text += formatFishOptions(i);

@@ -3,6 +3,7 @@
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/Describe.h"
+#include "program/Messages.h"
 #include "program/UsageError.h"
 
 #include <iostream>
@@ -27,6 +28,9 @@ const CommandSyntax& describeSyntax() {
       "options and their values.",
       {{"KIND", "man (the manual page), bash, zsh or fish", {"man", "bash", "zsh", "fish"}}},
       {},
+      {},
+      "Print the manual page or shell completions",
+      "describe man | man -l -",
   };
   return syntax;
 }
@@ -39,6 +43,7 @@ int describeCommand(int argc, char** argv, int first) {
   const auto description = descriptions.find(kind);
   if (description == descriptions.end())
     throw usageError("KIND: '", toOneLine(kind), "' is unknown; use man, bash, zsh or fish");
+  allowClosedOutput();
   std::cout << description->second() << std::flush;
   return 0;
 }

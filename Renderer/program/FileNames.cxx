@@ -72,20 +72,28 @@ std::vector<std::string> toRelativeArguments(const std::vector<std::string>& wor
   std::vector<std::string> result;
   const Option* pending = nullptr; // option whose value is the next word
   for (const std::string& word : words) {
-    if (pending || !word.starts_with("--")) {
-      result.push_back(convert(std::exchange(pending, nullptr), word));
+    const auto parsed = pending ? std::nullopt : parseOptionWord(options, word);
+    if (!parsed) {
+      result.push_back(word.starts_with("--") && !pending
+                           ? word
+                           : convert(std::exchange(pending, nullptr), word));
       continue;
     }
-    const std::size_t equals = word.find('=');
-    const Option* const option = findOption(options, word.substr(2, equals - 2));
-    if (option && equals != word.npos)
-      result.push_back(word.substr(0, equals + 1) + convert(option, word.substr(equals + 1)));
-    else
-      result.push_back(word);
-    if (option && equals == word.npos && !option->isSwitch())
+    const auto& [option, value] = *parsed;
+    const std::size_t head = word.size() - (value ? value->size() : 0);
+    result.push_back(word.substr(0, head) + (value ? convert(option, word.substr(head)) : ""));
+    if (!value && !option->isSwitch())
       pending = option;
   }
   return result;
+}
+
+std::string toCanonicalArgument(const std::string& word, std::span<const Option> options) {
+  const auto parsed = parseOptionWord(options, word);
+  if (!parsed)
+    return word;
+  const auto& [option, value] = *parsed;
+  return concat("--", option->name, value ? concat("=", *value) : "");
 }
 
 } // namespace fenestra

@@ -20,4 +20,7 @@ std::vector<std::string> toRelativeArguments(const std::vector<std::string>& wor
                                              std::span<const Option> options,
                                              const std::filesystem::path& folder);
 
+/// Argument "--name=value" with the canonical name; any other argument unchanged.
+std::string toCanonicalArgument(const std::string& word, std::span<const Option> options);
+
 } // namespace fenestra

@@ -7,6 +7,7 @@
 #include "program/CommandLine.h"
 #include "program/ErrorAdvice.h"
 #include "program/MergedOptions.h"
+#include "program/Messages.h"
 #include "program/UsageError.h"
 #include "scene/Inspection.h"
 
@@ -375,7 +376,10 @@ constexpr const char* inspectGroup = "Inspect";
 const Option inspectTable[] = {
     {"volume", "NAME", inspectGroup,
      "As for render: volume of a scene, or series of a DICOM folder"},
-    {"segmentation", "FILE|NAME", inspectGroup, "As for render: a file, or a node of the scene"},
+    {{"segmentation", 's'},
+     "FILE|NAME",
+     inspectGroup,
+     "As for render: a file, or a node of the scene"},
     {"labels", "FILE|NAME", inspectGroup, "As for render: names of label values"},
     {"progress", "KIND", inspectGroup, "Accepted as by render; inspect shows no progress",
      ValueSpec::choice({"auto", "bar", "xml", "none"})},
@@ -405,6 +409,9 @@ const CommandSyntax& inspectSyntax() {
         "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), label map, "
         "segmentation (.seg.nrrd) or DICOM folder"}},
       inspectTable,
+      {},
+      "List what an input contains and what a render would use",
+      "inspect scene.mrb",
   };
   return syntax;
 }
@@ -435,6 +442,7 @@ int inspectCommand(int argc, char** argv, int first) {
   const Inspection leftOut = stored.ignored;
   Inspection& warnings = inspection["warnings"];
   warnings.insert(warnings.begin(), leftOut.begin(), leftOut.end());
+  allowClosedOutput();
   std::cout << (values->has("json") ? dumpJson(inspection) : formatInspection(inspection))
             << std::flush;
   return 0;

@@ -4,6 +4,7 @@
 #include "io/Digest.h"
 #include "io/InputRegistry.h"
 #include "program/FileNames.h"
+#include "program/RenderOptions.h"
 #include "program/UsageError.h"
 #include "program/about/Version.h"
 
@@ -110,6 +111,8 @@ void Manifest::readRequest(int mostFiles) {
   const JsonNode request = JsonNode(m_document, m_path.string()).at("request");
   checkRequest(request);
   m_recorded = request.value();
+  for (json& argument : m_recorded.at("arguments")) // may have names from version 0.1
+    argument = toCanonicalArgument(argument.get<std::string>(), renderSyntax.options);
 }
 
 std::set<fs::path> Manifest::recordedInputs() const {

@@ -94,7 +94,7 @@ OptionValues readRenderOptions(const CheckpointFile& film) {
       std::error_code failed;
       const fs::path file = (folder / text).lexically_normal();
       const bool isFile = (!option || option->canNameFile()) && fs::exists(file, failed);
-      options.add(name, isFile ? file.string() : text);
+      options.add(option ? option->name : name, isFile ? file.string() : text);
     }
   }
   if (options.texts("INPUT").size() != 1)
@@ -120,6 +120,9 @@ const CommandSyntax& mergeSyntax() {
         .description = "All checkpoint files (.film) of one image",
         .canRepeat = true}},
       options,
+      {},
+      "Join the shards of an image that were rendered separately",
+      "merge part1.film part2.film -o knee.png",
   };
   return syntax;
 }

@@ -129,6 +129,12 @@ bool isBeyondLimit(const std::string& name, const std::string& value) {
   return samples.integer(name) > mostSamples;
 }
 
+/// Value of the attribute with one of the option's names; empty: none.
+std::string findStoredValue(const MrmlNode& node, const Option& option) {
+  const std::string value = node.text(option.name);
+  return value.empty() ? node.text(option.oneWord) : value;
+}
+
 /// Adds a stored value. A repeatable option stores its values separated by commas ("\," is a
 /// literal comma).
 void addStoredValue(const Option& option, const std::string& value, OptionValues& merged) {
@@ -169,9 +175,9 @@ PresetOptions mergePreset(const OptionValues& given, const Input& input) {
     const Option& option = findPresetOption(name, *given.text("preset"));
     if (isOverridden(option, given) || (isClipOption(option) && !values.has("focus")))
       continue;
-    values.remove(name);
-    values.add(name, value);
-    if (name == "transfer")
+    values.remove(option.name);
+    values.add(option.name, value);
+    if (option.name == "transfer")
       result.transferModality = preset.modality;
   }
   values.remove("preset");
@@ -197,7 +203,7 @@ SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
   for (const Option& option : renderSyntax.options) {
     const std::string& name = option.name;
     const bool isNode = name == "volume" || name == "segmentation";
-    const std::string value = isNode ? node.referenceId(name) : node.text(name);
+    const std::string value = isNode ? node.referenceId(name) : findStoredValue(node, option);
     if (!isImageOption(option) || value.empty() || isReplaced(option, explicitValues))
       continue;
     if (const std::string reason = findRejectionReason(input, name, value); reason.empty())

@@ -33,6 +33,19 @@ Error invalidValue(const std::string& option, const std::string& expected, const
   return usageError("--", option, ": expected ", expected, ", got '", toOneLine(got), "'");
 }
 
+/// " from 0 to 1". Bounds that only exclude absurd values are omitted unless `given` exceeds them.
+std::string formatRange(const ValueSpec& spec, std::optional<double> given) {
+  constexpr double absurd = 1e9;
+  constexpr int exact = 20; // significant digits
+  const bool showsLeast = spec.least > -absurd || (given && *given < spec.least);
+  const bool showsGreatest = spec.greatest < absurd || (given && *given > spec.greatest);
+  const auto format = [](double bound) {
+    return std::floor(bound) == bound ? toString(bound, exact) : toString(bound);
+  };
+  return concat(showsLeast ? " from " + format(spec.least) : "",
+                showsGreatest ? " to " + format(spec.greatest) : "");
+}
+
 /// Throws Error (usage) unless the value exists and is in the option's range.
 template <typename Number>
 Number requireInRange(std::optional<Number> value, const Option& option, const std::string& given,
@@ -40,9 +53,9 @@ Number requireInRange(std::optional<Number> value, const Option& option, const s
   const auto [least, greatest] = std::pair(option.spec.least, option.spec.greatest);
   if (value && least <= static_cast<double>(*value) && static_cast<double>(*value) <= greatest)
     return *value;
-  const char* const kind = std::is_integral_v<Number> ? "an integer from " : "a number from ";
-  throw invalidValue(option.name,
-                     concat(kind, toString(least), " to ", toString(greatest), alternative), given);
+  const char* const kind = std::is_integral_v<Number> ? "an integer" : "a number";
+  throw invalidValue(
+      option.name, concat(kind, formatRange(option.spec, parseFinite(given)), alternative), given);
 }
 
 } // namespace
@@ -57,9 +70,46 @@ std::string Option::resolveAlias(const std::string& value) const {
   return alias == spec.aliases.end() ? value : alias->second;
 }
 
-const Option* findOption(std::span<const Option> flags, std::string_view name) {
-  const auto it = std::ranges::find(flags, name, &Option::name);
-  return it == flags.end() ? nullptr : &*it;
+OptionNames::OptionNames(const char* canonical, const char* formerName)
+    : name(canonical), oneWord(formerName) {
+  if (oneWord.empty())
+    oneWord = replaceAll(name, "-", "");
+}
+
+bool OptionNames::hasName(std::string_view given) const {
+  return given == name || given == oneWord || given == replaceAll(name, "-", "");
+}
+
+const Option* findOption(std::span<const Option> options, std::string_view name) {
+  const auto it =
+      std::ranges::find_if(options, [name](const Option& option) { return option.hasName(name); });
+  return it == options.end() ? nullptr : &*it;
+}
+
+const Option* findOption(std::span<const Option> options, char letter) {
+  const auto it = std::ranges::find(options, letter, &Option::letter);
+  return it == options.end() || letter == 0 ? nullptr : &*it;
+}
+
+std::optional<OptionWord> parseOptionWord(std::span<const Option> options, std::string_view word) {
+  if (word.starts_with("--")) {
+    const std::size_t equals = word.find('=');
+    const Option* const option = findOption(options, word.substr(2, equals - 2));
+    if (!option)
+      return std::nullopt;
+    return OptionWord{option, equals == word.npos ? std::optional<std::string_view>()
+                                                  : word.substr(equals + 1)};
+  }
+  const Option* const option =
+      word.size() >= 2 && word[0] == '-' ? findOption(options, word[1]) : nullptr;
+  if (!option)
+    return std::nullopt;
+  if (word.size() == 2)
+    return OptionWord{option, std::nullopt};
+  const bool isNumber = word.find_first_not_of("0123456789", 2) == word.npos;
+  if (option->spec.type == "integer" && isNumber)
+    return OptionWord{option, word.substr(2)};
+  return std::nullopt;
 }
 
 const Option& OptionValues::option(const std::string& name) const {

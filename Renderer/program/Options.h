@@ -153,10 +153,25 @@ constexpr OverrideGroup parentGroup(OverrideGroup group) {
 /// one kind of clip. Without it the option is rejected.
 enum class Requires { nothing, focus, labels, clip, plane, hole, ghost, surface, spline };
 
-struct Option {
-  std::string name;        ///< one lower-case word, without dashes
+/// Names of an option. Every place that reads names (command line, scenes, presets, tables) accepts
+/// all long ones; values are stored under the canonical one.
+struct OptionNames {
+  std::string name;    ///< canonical: lower-case words joined by "-"
+  std::string oneWord; ///< spelling of version 0.1 and of Slicer, whose parser accepts no "-"
+  char letter = 0;     ///< of the short form, as 'o' in "-o"; 0: none
+
+  /// `formerName`: that in version 0.1, unless it was `canonical` without "-".
+  OptionNames(const char* canonical, const char* formerName);
+  OptionNames(const char* canonical, char shortForm = 0) : OptionNames(canonical, "") {
+    letter = shortForm;
+  }
+
+  bool hasName(std::string_view given) const;
+};
+
+struct Option : OptionNames {
   std::string placeholder; ///< placeholder in the help, such as FILE; empty: a switch
-  std::string group;       ///< heading in the help
+  std::string group;       ///< heading in the help; empty: not in the help
   std::string description; ///< one sentence; a final "[…]" describes the default
   ValueSpec spec = {};
   OverrideGroup overrideGroup = OverrideGroup::own;
@@ -192,10 +207,12 @@ struct CommandSyntax {
   std::vector<Positional> positionals; ///< all required, in order
   std::span<const Option> options;     ///< including `excluded`
   std::vector<ExcludedOptions> excluded = {};
+  std::string brief = {};   ///< what it does, in one line of at most 64 characters
+  std::string example = {}; ///< arguments of a typical call, after "fenestra"
 };
 
-/// Option values as given by the user. Accessors throw Error (usage) for invalid values. Those that
-/// return no std::optional require that the option was given.
+/// Option values as given by the user, by canonical name. Accessors throw Error (usage) for invalid
+/// values. Those that return no std::optional require that the option was given.
 class OptionValues {
 public:
   explicit OptionValues(std::span<const Option> options) : m_options(options) {}
@@ -252,7 +269,17 @@ private:
   std::map<std::string, std::vector<std::string>> m_values;
 };
 
-/// Option with that name; nullptr: none.
+/// Option with that long name; nullptr: none.
 const Option* findOption(std::span<const Option> options, std::string_view name);
+/// Option with that short form; nullptr: none.
+const Option* findOption(std::span<const Option> options, char letter);
+
+/// Argument of a command line that names an option.
+struct OptionWord {
+  const Option* option;
+  std::optional<std::string_view> value; ///< in the same argument
+};
+/// Parses "--name", "--name=value", "-x", or "-x4" of an integer; nullopt: anything else.
+std::optional<OptionWord> parseOptionWord(std::span<const Option> options, std::string_view word);
 
 } // namespace fenestra

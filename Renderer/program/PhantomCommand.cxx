@@ -1,21 +1,22 @@
 #include "program/Commands.h"
 
 #include "base/Error.h"
-#include "io/MessageText.h"
 #include "phantoms/PhantomWriter.h"
 #include "phantoms/Phantoms.h"
 #include "program/CommandLine.h"
+#include "program/Messages.h"
 #include "program/UsageError.h"
 
 #include <cstdio>
-#include <iostream>
 
 namespace fenestra {
 namespace {
 
 constexpr const char* phantomGroup = "Phantom";
 const Option phantomTable[] = {
-    {"output", "DIR", phantomGroup,
+    {{"output", 'o'},
+     "DIR",
+     phantomGroup,
      "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the other files [KIND]"},
     {"size", "WxHxD", phantomGroup,
      concat("Voxels over a fixed field of view; N for the cube [knee ", joinNumbers(kneeSize, "x"),
@@ -24,6 +25,7 @@ const Option phantomTable[] = {
      ValueSpec{.least = 16, .greatest = 1024}}, // range of the cube's N
     {"edge", "MM", phantomGroup, "Edge length of the cube",
      ValueSpec::number(1e-3, 1e5).withDefault(toString(CubeOptions().edge))},
+    {OptionNames("quiet", 'q'), "", phantomGroup, "Prints only warnings and errors"},
 };
 
 /// Size WxHxD in voxels; without --size: `standard`.
@@ -71,6 +73,9 @@ const CommandSyntax& phantomSyntax() {
         "knee (MR), foot (CT), fetus (ultrasound) or cube (the scalar is the z index)",
         {"knee", "foot", "fetus", "cube"}}},
       phantomTable,
+      {},
+      "Write a synthetic subject to try Fenestra with",
+      "phantom knee",
   };
   return syntax;
 }
@@ -84,8 +89,8 @@ int phantomCommand(int argc, char** argv, int first) {
   configureMachine(*values);
   const Phantom phantom = makePhantom(kind, *values);
   const std::vector<std::string> files = writePhantom(phantom, folder, kind);
-  std::cout << toOneLine(concat(folder, ": ", join(files, " "))) << ", " << phantom.segments.size()
-            << " segments" << std::endl;
+  if (!values->has("quiet"))
+    printLine(concat(folder, ": ", join(files, " "), ", ", phantom.segments.size(), " segments"));
   return 0;
 }
 

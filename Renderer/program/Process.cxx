@@ -6,6 +6,7 @@
 #include "io/Sandbox.h"
 #include "io/TempFiles.h"
 #include "program/ErrorAdvice.h"
+#include "program/Messages.h"
 #include "program/Stop.h"
 
 #include <algorithm>
@@ -18,6 +19,7 @@
 #include <string_view>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
 namespace fenestra {
@@ -63,10 +65,16 @@ void openStandardStreams() {
       ::open(stream == STDIN_FILENO ? "/dev/null" : "/dev/full", O_RDWR); // gets this descriptor
 }
 
+/// True if standard output is a pipe without a reader.
+bool isOutputClosed() {
+  pollfd output = {STDOUT_FILENO, POLLOUT, 0};
+  return ::poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
+}
+
 /// Fails if standard output cannot be written, since printed text is also a result.
 int finishOutput(int status) {
   const bool isComplete = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
-  if (isComplete || status != 0)
+  if (isComplete || status != 0 || (isClosedOutputAllowed() && isOutputClosed()))
     return status;
   return reportFailure(outputStatus,
                        "standard output: cannot be written; disk full or pipe closed?");

@@ -1,5 +1,7 @@
 #include "program/ProgressView.h"
 
+#include "program/Messages.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <sys/ioctl.h>
@@ -49,17 +51,12 @@ void ProgressView::show(double fraction, const std::vector<std::string>& status,
   m_fraction = std::max(m_fraction, fraction); // noise can grow between passes
   if (m_mode == ProgressMode::xml)
     return showTags(status, last);
-  if (last)
-    return erase(); // leaves an empty line for the summary
-  if (m_mode == ProgressMode::bar)
-    showBar(status);
-}
-
-void ProgressView::erase() const {
   if (m_mode != ProgressMode::bar)
     return;
-  std::fputs("\r\033[K", stderr);
-  std::fflush(stderr);
+  if (last)
+    eraseBar();
+  else
+    showBar(drawLine(status));
 }
 
 void ProgressView::showTags(const std::vector<std::string>& status, bool last) const {
@@ -72,7 +69,7 @@ void ProgressView::showTags(const std::vector<std::string>& status, bool last) c
   std::fflush(stdout);
 }
 
-void ProgressView::showBar(const std::vector<std::string>& status) const {
+std::string ProgressView::drawLine(const std::vector<std::string>& status) const {
   const double done = m_fraction;
   const double left = done > 0.0 ? m_watch.seconds() * (1.0 - done) / done : infinity;
   char percent[16];
@@ -90,8 +87,7 @@ void ProgressView::showBar(const std::vector<std::string>& status) const {
       line += (line.empty() ? "" : "  ") + field;
   if (line.size() + frame + longest / 3 <= width)
     line = drawBar(done, std::min(longest, width - line.size() - frame)) + line;
-  std::fprintf(stderr, "\r%s\033[K", line.c_str());
-  std::fflush(stderr);
+  return line;
 }
 
 } // namespace fenestra

@@ -21,12 +21,11 @@ public:
   /// Shows the finished fraction of all work, in [0, 1], which never decreases; the time left; and
   /// status texts. `last`: final call.
   void show(double fraction, const std::vector<std::string>& status, bool last);
-  /// Erases the bar, so that a line can be printed; show() draws it again.
-  void erase() const;
 
 private:
   void showTags(const std::vector<std::string>& status, bool last) const;
-  void showBar(const std::vector<std::string>& status) const;
+  /// Bar, percentage, time left and status, as far as they fit into the terminal's width.
+  std::string drawLine(const std::vector<std::string>& status) const;
 
   ProgressMode m_mode;
   Stopwatch m_watch;

@@ -10,6 +10,7 @@
 #include "program/Commands.h"
 #include "program/ErrorAdvice.h"
 #include "program/FileNames.h"
+#include "program/Messages.h"
 #include "program/Progress.h"
 #include "program/RenderSteps.h"
 #include "program/SlicerModule.h"
@@ -100,6 +101,7 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
   if (std::ranges::any_of(options.outputs, isDisplayFile))
     json["display"] = {{"tone", toString(options.display.view)},
                        {"exposure", options.display.exposure}};
+  json["transferFunction"] = toRelativeName(scene.transferName(), folder);
   if (options.preset)
     json["preset"] = toRelativeName(*options.preset, folder);
   json["filesRead"] = Json::array();
@@ -188,8 +190,14 @@ std::vector<std::string> findStaleFiles(const RenderOptions& options, const Outp
   return warnings;
 }
 
+std::string formatPercent(double fraction) {
+  return toString(100.0 * fraction, 2) + " %";
+}
+
 void printResult(const RenderOptions& options, const RenderResult& result,
-                 const std::optional<double>& filtered, double seconds) {
+                 const std::optional<double>& denoised, double seconds) {
+  if (options.quiet)
+    return;
   const auto files = join(options.outputs, ", ", [](const auto& path) { return path.string(); });
   const SampleCounts counts = result.film.sampleCounts();
   const double noise = result.film.noise();
@@ -198,21 +206,21 @@ void printResult(const RenderOptions& options, const RenderResult& result,
              result.finishedSamples, result.finishedSamples == 1 ? " sample" : " samples");
   line += counts.min == counts.max ? " per pixel"
                                    : concat(" per pixel (", counts.min, " to ", counts.max, ")");
-  if (noise < infinity)
-    line += ", noise " + toString(noise, 3);
-  if (filtered)
-    line += ", after denoising " + toString(*filtered, 3);
+  if (denoised)
+    line += concat(", noise ", formatPercent(*denoised), " (", formatPercent(noise),
+                   " before denoising)");
+  else if (noise < infinity)
+    line += ", noise " + formatPercent(noise);
   line += ", " + toString(seconds, 3) + " s";
   if (result.reason == StopReason::request)
     line += options.checkpoint ? " (stopped on request; the same command resumes)"
                                : " (stopped on request)";
-  std::cout << toOneLine(line) << std::endl;
+  printLine(line);
 }
 
-void warn(const RenderOptions& options, const std::vector<std::string>& warnings) {
+void warn(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings)
-    (options.returnValues ? std::cout : std::cerr)
-        << "fenestra: warning: " << toOneLine(warning) << '\n';
+    printWarning(warning);
 }
 
 /// Writes the checkpoint file of a shard. Returns the exit status.
@@ -220,13 +228,12 @@ int finishShard(const RenderOptions& options, const RenderResult& result, Checkp
                 double seconds) {
   checkpoint.save(result);
   const bool isStopped = result.reason == StopReason::request;
-  std::cout << toOneLine(concat(*options.checkpoint, ": shard ",
-                                formatShard(options.settings.shard), " of ", options.scene.width,
-                                "x", options.scene.height, " pixels, ", result.finishedSamples,
-                                result.finishedSamples == 1 ? " sample" : " samples",
-                                " per pixel, ", toString(seconds, 3), " s",
-                                isStopped ? " (stopped on request; the same command resumes)" : ""))
-            << std::endl;
+  if (!options.quiet)
+    printLine(concat(*options.checkpoint, ": shard ", formatShard(options.settings.shard), " of ",
+                     options.scene.width, "x", options.scene.height, " pixels, ",
+                     result.finishedSamples, result.finishedSamples == 1 ? " sample" : " samples",
+                     " per pixel, ", toString(seconds, 3), " s",
+                     isStopped ? " (stopped on request; the same command resumes)" : ""));
   return isStopped ? stopStatus() : 0;
 }
 
@@ -278,9 +285,9 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   const Stopwatch total;
   const PreparedScene scene(options.scene, job.input);
   outputs.checkInputs(); // now including files that the scene refers to
-  warn(options, composeMessages(scene.warnings()));
-  if (options.progress != ProgressMode::none && options.progress != ProgressMode::xml)
-    std::cerr << toOneLine(scene.choices()) << '\n';
+  warn(composeMessages(scene.warnings()));
+  if (options.verbose)
+    printFacts(scene);
 
   RenderMonitor monitor;
   const DeferredStop stopInstead(monitor.stop);
@@ -295,7 +302,7 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   if (options.isShard)
     return finishShard(options, result, *checkpoint, total.seconds());
   if (result.finishedSamples == 0) {
-    std::cerr << "fenestra: stopped on request before the first pass; no image was written\n";
+    printLine("fenestra: stopped on request before the first pass; no image was written");
     return stopStatus();
   }
   watch.lap();
@@ -306,7 +313,7 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   outputs.commit();
   stats.write = watch.lap();
   stats.warnings = findStaleFiles(options, outputs);
-  warn(options, stats.warnings);
+  warn(stats.warnings);
 
   writeStats(options, scene, result, total, monitor, stats, outputs);
   if (options.returnValues)
@@ -325,20 +332,22 @@ int renderCommand(int argc, char** argv, int first) {
 
 int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first) {
   if (std::find(argv + first, argv + argc, std::string_view("--xml")) != argv + argc) {
+    allowClosedOutput();
     std::cout << makeSlicerXml(renderSyntax) << std::flush;
     return 0;
   }
   const std::optional<OptionValues> given = parseCommandLine(renderSyntax, argc, argv, first);
   if (!given)
     return 0;
+  if (given->has("returnparameterfile"))
+    printLinesToOutput();
   configureMachine(*given);
   const RenderJob job = makeRenderJob(*given);
   if (given->has("echo"))
     std::cout << job.values.echo() << std::flush;
   std::optional<Checkpoint> checkpoint;
   if (job.options.checkpoint)
-    checkpoint.emplace(job, *given,
-                       [&job](const std::string& warning) { warn(job.options, {warning}); });
+    checkpoint.emplace(job, *given, printWarning);
   Outputs outputs;
   declareOutputs(job.options, outputs);
   checkMemory(job.options.scene);

@@ -3,6 +3,7 @@
 #include "base/Error.h"
 #include "files/images/ImageFormat.h"
 #include "io/MessageText.h"
+#include "program/Quality.h"
 #include "program/UsageError.h"
 #include "scene/NamedPresets.h"
 
@@ -12,13 +13,18 @@
 namespace fenestra {
 namespace {
 
-constexpr const char* sceneGroup = "Input, focus and output";
+constexpr const char* sceneGroup = "Input and focus";
 constexpr const char* clipGroup = "Clipping";
 constexpr const char* viewGroup = "View";
 constexpr const char* appearanceGroup = "Appearance";
 constexpr const char* qualityGroup = "Quality";
-constexpr const char* outputGroup = "More";
-constexpr const char* slicerGroup = "Used by 3D Slicer";
+constexpr const char* outputGroup = "Output";
+constexpr const char* slicerGroup = ""; ///< only in --xml and its users
+
+constexpr OptionGroup groupTable[] = {
+    {"input", sceneGroup},           {"clip", clipGroup},       {"view", viewGroup},
+    {"appearance", appearanceGroup}, {"quality", qualityGroup}, {"output", outputGroup},
+};
 
 // ---- values with a syntax of their own
 
@@ -106,6 +112,10 @@ void readTexts(const OptionValues& values, const std::string& name,
   texts = values.texts(name);
 }
 
+void readSwitch(const OptionValues&, const std::string&, bool& isOn) {
+  isOn = true;
+}
+
 void readLayers(const OptionValues& values, const std::string& name, LayerSet& layers) {
   layers = parseLayers(values.list(name));
 }
@@ -135,8 +145,9 @@ struct RenderOptionTable {
   RenderSettings& settings = options.settings;
 
   std::vector<Option> rows = {
-      {"segmentation", "FILE|NAME", sceneGroup,
-       "Segmentation: a .seg.nrrd, a label map, or a node of the scene [the scene's]",
+      {OptionNames("segmentation", 's'), "FILE|NAME", sceneGroup,
+       "Segmentation of the volume: a .seg.nrrd, a label map, or a segmentation of the scene, by "
+       "name or id [the scene's]",
        ValueSpec::labels().bind(scene.segmentation), OverrideGroup::focus},
       {"labels", "FILE|NAME", sceneGroup,
        "Names of label values: a .ctbl, .label, .json or .csv file, or totalsegmentator, "
@@ -146,33 +157,35 @@ struct RenderOptionTable {
            .withNamedValues(presetNames("labels", {"totalsegmentator"})),
        OverrideGroup::focus},
       {"focus", "A,B,...", sceneGroup,
-       "Segments to show with nothing in front of them: ids, names or label values (write a comma "
-       "in a name as \\,); may be repeated",
+       "Segments to show unobstructed: names, ids or label values, separated by commas (write a "
+       "comma in a name as \\,); may be repeated",
        ValueSpec::list().bind(scene.focus), OverrideGroup::focus},
       {"preset", "NAME|FILE|auto", sceneGroup,
-       concat("Anatomy preset for focus, appearance, view and clip: ",
+       concat("Settings for one anatomy (focus, clipping, view, appearance): ",
               join(listBuiltinPresets("presets"), ", "),
-              ", a .json file, or auto (chosen by segment names); other options override it"),
+              ", a .json file, or auto (chosen by the segment names); other options override it"),
        ValueSpec::text()
            .bind(options.preset)
            .withNamedValues(presetNames("presets", {"auto"}))
            .withAliases({{"brain-tumour", "brain-tumor"}})},
-      {"output", "FILE", sceneGroup,
-       "Output image: .png .tif (for display), .exr (all channels), .nrrd (linear RGBA and depth); "
-       "may be repeated [INPUT.png]",
+      {OptionNames("output", 'o'), "FILE", sceneGroup,
+       "Image to write: .png or .tif (for display), .exr (all channels) or .nrrd (linear RGBA, and "
+       "depth); may be repeated [INPUT.png]",
        ValueSpec::outputImage().bind(options.outputs), OverrideGroup::process},
       {"margin", "MM,...", clipGroup,
-       "Enlarges the focus, or shrinks it (negative): one value for all its segments, or one per "
-       "segment [0]",
+       "Grows the focus by this distance, or shrinks it (negative): one value for all its "
+       "segments, or one per segment [0]",
        ValueSpec::numbers().bind(focus.shaping.margins, readMargins), OverrideGroup::focus,
        Requires::focus},
-      {"labelsmoothing", "MM", clipGroup,
-       "Standard deviation of a Gaussian that smooths the labels of focus and materials; thick "
-       "slices are interpolated first; auto: 0.6 of the longest voxel edge, except for thin parts",
+      {"label-smoothing", "MM", clipGroup,
+       "Smooths the segments by a Gaussian of this standard deviation; thick slices are "
+       "interpolated first; auto: 0.6 of the longest voxel edge, except for thin parts",
        ValueSpec::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0, 0.0), OverrideGroup::own,
        Requires::labels},
       {"clip", "MODE", clipGroup,
-       "none, plane, hole, cutaway, ghost, surface, or auto: surface with a focus, else none",
+       "What is removed in front of the focus: none; plane; hole (a box, cylinder or sphere); "
+       "cutaway (all that hides it); ghost (as surface, but faded); surface (all in front of a "
+       "smooth surface through the focus); auto: surface with a focus, else none",
        ValueSpec::choice(clip.mode, {{"auto", std::nullopt},
                                      {"none", ClipMode::none},
                                      {"plane", ClipMode::plane},
@@ -181,91 +194,96 @@ struct RenderOptionTable {
                                      {"ghost", ClipMode::ghost},
                                      {"surface", ClipMode::surface}}),
        OverrideGroup::clip},
-      {"boundary", "KIND", clipGroup,
-       "How the clipping surface meets the outline of the focus: spline (approximately, as in the "
-       "paper) or exact (with equal depth and slope)",
+      {OptionNames("clip-boundary", "boundary"), "KIND", clipGroup,
+       "How the clipping surface meets the outline of the focus: spline (approximately) or exact "
+       "(with equal depth and slope)",
        ValueSpec::choice(surface.boundary,
                          {{"spline", Boundary::spline}, {"exact", Boundary::exact}}),
        OverrideGroup::boundary, Requires::surface},
-      {"controlpoints", "N", clipGroup, "Number of control points of the spline, 3 to 1000",
+      {"control-points", "N", clipGroup,
+       "Control points of the clipping spline, on the outline of the focus, 3 to 1000",
        ValueSpec::integer(3, 1000).bind(surface.controlPoints), OverrideGroup::boundary,
        Requires::spline},
-      {"smoothing", "P", clipGroup,
-       "Smoothing parameter p of the spline, for mm, from 0 (a plane) to 1 (meets all control "
+      {OptionNames("spline-smoothing", "smoothing"), "P", clipGroup,
+       "Smoothing parameter p of the clipping spline, from 0 (a plane) to 1 (through all control "
        "points)",
        ValueSpec::number(0.0, 1.0).bind(surface.smoothing), OverrideGroup::boundary,
        Requires::spline},
       {"plane", "OX,OY,OZ,NX,NY,NZ", clipGroup,
-       "Clip plane as point and normal, RAS mm; the side the normal points to is removed "
-       "[fitted to the focus]",
+       "Clip plane: a point on it and its normal, RAS, mm; the side that the normal points to is "
+       "removed [fitted to the focus]",
        ValueSpec::numbers().bind(clip.plane, readPlane), OverrideGroup::clip, Requires::plane},
-      {"hole", "SHAPE", clipGroup, "Shape of --clip hole: box, cylinder or sphere",
+      {"hole", "SHAPE", clipGroup, "Shape of the hole of --clip hole: box, cylinder or sphere",
        ValueSpec::choice(surface.hole.shape, {{"box", HoleShape::box},
                                               {"cylinder", HoleShape::cylinder},
                                               {"sphere", HoleShape::sphere}}),
        OverrideGroup::clip, Requires::hole},
-      {"holemargin", "MM", clipGroup, "Distance from the focus to the wall of the hole",
+      {"hole-margin", "MM", clipGroup, "Distance from the focus to the wall of the hole",
        ValueSpec::number(0.0, 1e6).bind(surface.hole.margin), OverrideGroup::clip, Requires::hole},
-      {"ghost", "FRACTION", clipGroup, "Fraction of the extinction that --clip ghost keeps, 0 to 1",
+      {"ghost", "FRACTION", clipGroup,
+       "Fraction of the opacity per mm that --clip ghost leaves in front of the focus, 0 to 1",
        ValueSpec::number(0.0, 1.0).bind(clip.ghost), OverrideGroup::clip, Requires::ghost},
-      {"offset", "MM", clipGroup,
-       "Moves the cut away from the camera, into the focus, or toward the camera (negative)",
+      {OptionNames("clip-offset", "offset"), "MM", clipGroup,
+       "Moves the cut away from the camera (into the focus) or, if negative, toward it",
        ValueSpec::number(-1e6, 1e6).bind(surface.offset), OverrideGroup::clip, Requires::clip},
-      {"soft", "MM", clipGroup,
-       "Depth behind the cut over which the volume fades in; auto: as --labelsmoothing for --clip "
+      {OptionNames("clip-softness", "soft"), "MM", clipGroup,
+       "Depth behind the cut over which the volume fades in; auto: as --label-smoothing for --clip "
        "surface, hole and cutaway, else 0",
        ValueSpec::numberOrAuto(clip.softness, 0.0, 1e6, 0.0), OverrideGroup::clip, Requires::clip},
-      {"contextdensity", "F", clipGroup,
-       "Factor on the extinction of everything but the focus, 0 to 1",
+      {"context-density", "F", clipGroup,
+       "Opacity of everything but the focus: factor on its extinction, 0 (invisible) to 1",
        ValueSpec::number(0.0, 1.0).bind(focus.contextExtinction), OverrideGroup::own,
        Requires::focus},
-      {"contextsaturation", "S", clipGroup,
-       "Color saturation of everything but the focus, from 0 (gray) to 1 (unchanged); auto: the "
-       "largest of 1, 0.35 and 0 that makes the focus distinguishable; 1 with materials",
+      {"context-saturation", "S", clipGroup,
+       "Color saturation of everything but the focus, 0 (gray) to 1 (unchanged); auto: the largest "
+       "of 1, 0.35 and 0 that makes the focus distinguishable; 1 with materials",
        ValueSpec::numberOrAuto(focus.contextSaturation, 0.0, 1.0, 1.0), OverrideGroup::own,
        Requires::focus},
       {"view", "NAME", viewGroup,
-       "anterior, posterior, left, right, superior, inferior, or auto: the direction that shows "
-       "most of the focus, with the least foreshortening and the least removed [the scene's "
-       "camera, else anterior]",
+       "Side that the camera looks from: anterior, posterior, left, right, superior, inferior, or "
+       "auto: the direction that shows most of the focus, with the least foreshortening and the "
+       "least removed [the scene's camera, else anterior]",
        ValueSpec::choice({"anterior", "posterior", "left", "right", "superior", "inferior", "auto"})
            .bind(view.name)
            .withDefault("anterior"),
        OverrideGroup::viewpoint},
-      {"position", "R,A,S", viewGroup, "Camera position, mm",
+      {"position", "R,A,S", viewGroup, "Position of the camera, RAS, mm",
        ValueSpec::numbers().bind(view.position), OverrideGroup::viewpoint},
       {"target", "R,A,S", viewGroup,
-       "Point that the camera looks at, mm [center of the focus, shifted if that is at an end of "
-       "the scan; else center of the volume]",
+       "Point that the camera looks at, RAS, mm [center of the focus, shifted if that is at an end "
+       "of the scan; else center of the volume]",
        ValueSpec::numbers().bind(view.target), OverrideGroup::view},
-      {"up", "R,A,S", viewGroup, "Up direction of the image", ValueSpec::numbers().bind(view.up),
-       OverrideGroup::view},
+      {"up", "R,A,S", viewGroup, "Direction that is up in the image, RAS",
+       ValueSpec::numbers().bind(view.up), OverrideGroup::view},
       {"projection", "KIND", viewGroup,
-       "orthographic or perspective [the scene's, else orthographic]",
+       "orthographic (parallel rays) or perspective [the scene's, else orthographic]",
        ValueSpec::choice(view.projection, {{"orthographic", Projection::orthographic},
                                            {"perspective", Projection::perspective}})
            .withDefault("orthographic"),
        OverrideGroup::extent},
       {"scale", "MM", viewGroup,
-       "Orthographic: half the height of the image [fits the focus, else everything visible]",
+       "Orthographic projection: half the height of the image, mm [fits the focus, else everything "
+       "visible]",
        ValueSpec::number(1e-9, 1e9).bind(view.scale), OverrideGroup::extent},
       {"angle", "DEGREES", viewGroup,
-       "Perspective: full vertical angle [30, or less to fit the focus]",
+       "Perspective projection: vertical angle of view [30, or less to fit the focus]",
        ValueSpec::number(1e-6, 179.0).bind(view.angle), OverrideGroup::extent},
       {"transfer", "FILE|PRESET|JSON", appearanceGroup,
-       "Transfer function: a .vp, .vp.json or Fenestra .json file, inline JSON, a preset such as "
-       "ct-soft, or a volume property by name, of the scene or of 3D Slicer, such as CT-AAA [the "
-       "scene's, else by modality]",
+       "Transfer function, which gives voxel values color and opacity: a .vp, .vp.json or Fenestra "
+       ".json file, inline JSON, a preset such as ct-soft, or a volume property of the scene or of "
+       "3D Slicer by name, such as CT-AAA [the scene's, else by modality]",
        ValueSpec::text().bind(scene.transfer).withNamedValues(listBuiltinPresets("transfer"))},
-      {"shift", "X", appearanceGroup, "Shifts the transfer function along the scalar axis",
+      {OptionNames("transfer-shift", "shift"), "X", appearanceGroup,
+       "Shifts the transfer function to higher (or lower) voxel values",
        ValueSpec::number(-1e30, 1e30).bind(scene.shift)},
-      {"density", "D", appearanceGroup, "Factor on the extinction, 0 to 1000",
+      {OptionNames("density-scale", "density"), "D", appearanceGroup,
+       "Opacity of the whole volume: factor on its extinction, 0 to 1000",
        ValueSpec::number(0.0, 1000.0).bind(scene.density)},
       {"materials", "none|auto|library|FILE", appearanceGroup,
        "Segment colors by material: none, library (Fenestra's), a .json file that extends the "
        "library, or auto: library colors, adjusted so that the focus is distinguishable; opacity "
        "and surfaces are unaffected [auto if the material of the focus is known and "
-       "--contextsaturation is not given, else none]",
+       "--context-saturation is not given, else none]",
        ValueSpec::text().bind(scene.materials).withNamedValues({"none", "auto", "library"}),
        OverrideGroup::materials},
       {"material", "TEXT", appearanceGroup,
@@ -277,38 +295,43 @@ struct RenderOptionTable {
        ValueSpec::text().bind(scene.lights).withNamedValues(listBuiltinPresets("lights")),
        OverrideGroup::lights},
       {"environment", "R,G,B|GRAY|FILE", appearanceGroup,
-       "Radiance from all directions, or a latitude-longitude .exr; replaces the environment of "
-       "--lights",
+       "Light from all directions: its radiance, or a latitude-longitude .exr image; replaces the "
+       "environment of --lights",
        ValueSpec::text().bind(scene, readEnvironment), OverrideGroup::lights},
       {"background", "R,G,B|GRAY|KIND", appearanceGroup,
-       "Linear color (the tone curve of a .png maps 1,1,1 to light gray, 100,100,100 to white), "
-       "gradient (dark grays), transparent or environment [the scene's, else gradient]",
+       "Color behind the volume, linear (the tone curve of a .png maps 1,1,1 to light gray, "
+       "100,100,100 to white), gradient (dark grays), transparent or environment [the scene's, "
+       "else gradient]",
        ValueSpec::text()
            .bind(options.background, readBackground)
            .withNamedValues({"gradient", "transparent", "environment"})},
       {"exposure", "EV", appearanceGroup,
-       "Exposure of .png and .tif in stops, -16 to 16; .exr and .nrrd are unaffected",
+       "Brightness of .png and .tif in stops (1 doubles it), -16 to 16; .exr and .nrrd are "
+       "unaffected",
        ValueSpec::number(-16.0, 16.0).bind(options.display.exposure)},
       {"tone", "CURVE", appearanceGroup,
        "Tone curve of .png and .tif: film (more contrast, preserves hue) or photographic "
        "(preserves dark and middle values, for measuring)",
        ValueSpec::choice(options.display.view, {{"film", DisplayView::film},
                                                 {"photographic", DisplayView::photographic}})},
-      {"size", "WxH", qualityGroup, "Image size in pixels",
+      {"size", "WxH", qualityGroup, "Width and height of the image in pixels",
        ValueSpec::text()
            .bind(scene, readSize)
            .withDefault(std::to_string(scene.width) + "x" + std::to_string(scene.height))},
+      {"quality", "LEVEL", qualityGroup, describeQuality(), ValueSpec::choice(listQualityNames()),
+       OverrideGroup::stop},
       {"samples", "N", qualityGroup,
-       "Stop at N samples per pixel [" + std::to_string(settings.samples) +
-           " unless seconds or noise are given]",
+       "Stops at N samples per pixel [" + std::to_string(settings.samples) +
+           " unless quality, seconds or noise are given]",
        ValueSpec::integer(1, unlimited).bind(settings.samples).withDefault(""),
        OverrideGroup::stop},
       {"seconds", "T", qualityGroup,
-       "Stop after T seconds of rendering, but not before one sample per pixel",
+       "Stops after T seconds of rendering, but not before one sample per pixel",
        ValueSpec::number(1e-3, 1e9).bind(settings.seconds).withDefault(""), OverrideGroup::stop},
-      {"noise", "E", qualityGroup, "Stop when the relative noise is at most E, for example 0.03",
+      {"noise", "E", qualityGroup,
+       "Stops when the noise relative to the image is at most E, for example 0.03 (3 %)",
        ValueSpec::number(1e-6, 1e6).bind(settings.noise).withDefault(""), OverrideGroup::stop},
-      {"noisetarget", "KIND", qualityGroup,
+      {"noise-target", "KIND", qualityGroup,
        "Noise that --noise limits: raw (before denoising; noisier pixels get more samples), "
        "denoised (estimated error after denoising), or auto: denoised if all outputs are .png or "
        ".tif",
@@ -323,22 +346,24 @@ struct RenderOptionTable {
        ValueSpec::choice(
            options.denoise,
            {{"auto", Denoise::automatic}, {"on", Denoise::on}, {"off", Denoise::off}})},
-      {"bounces", "B", qualityGroup, "Maximum scattering events per path (biased) [unlimited]",
+      {"bounces", "B", qualityGroup,
+       "Most scattering events per light path; a limit makes the image darker [unlimited]",
        ValueSpec::integer(0, unlimited).bind(settings.path.bounces).withDefault("")},
-      {"seed", "S", qualityGroup, "Random seed", ValueSpec::integer(0, 0x1p64).bind(settings.seed)},
+      {"seed", "S", qualityGroup, "Seed of the random numbers; the same seed gives the same image",
+       ValueSpec::integer(0, 0x1p64).bind(settings.seed)},
       {"sampling", "KIND", qualityGroup,
-       "stratified: first-bounce dimensions are stratified in groups of 8 samples; independent: "
-       "plain "
-       "random numbers (noisier); both are unbiased",
+       "Random numbers of a pixel's samples: stratified in groups of 8, or independent (noisier); "
+       "both are unbiased",
        ValueSpec::choice(settings.sampling, {{"stratified", Sampling::stratified},
                                              {"independent", Sampling::independent}})
            .withAliases({{"strata", "stratified"}})},
-      {"threads", "K", qualityGroup, "Number of threads, at most one per core; 0: all cores",
+      {OptionNames("threads", 'j'), "K", qualityGroup,
+       "Number of threads, at most one per core; 0: all cores",
        ValueSpec::integer(0, 1024).bind(settings.threads), OverrideGroup::process},
       {"volume", "NAME", outputGroup,
-       "Volume of a scene (name or id), or series of a DICOM folder [as in Slicer]",
-       ValueSpec::text().bind(scene.volume)},
-      // Slicer takes one file, hence color alone in its panel.
+       "Volume of a scene (name or id), or series of a DICOM folder (number or uid) [as in Slicer]",
+       ValueSpec::text().bind(
+           scene.volume)}, // Slicer takes one file, hence color alone in its panel.
       {"layers", "L,...", outputGroup,
        "Channels of .exr: color, depth, clip, albedo, normal, error, samples, and with --denoise "
        "on denoised, expected; of .nrrd: color, depth and denoised (separate files) [all]",
@@ -348,11 +373,12 @@ struct RenderOptionTable {
            .withNamedValues({allLayers.begin(), allLayers.end()}),
        OverrideGroup::process},
       {"surface", "FILE", outputGroup,
-       "Clipping surface as triangles, RAS mm, accurate to a tenth of a pixel in depth (any --clip "
-       "but none and plane): .vtp .ply (with depths) .stl",
+       "Writes the clipping surface as triangles, RAS, mm, accurate to a tenth of a pixel in depth "
+       "(any --clip but none and plane): .vtp, .ply (with depths) or .stl",
        ValueSpec::surface().bind(options.surface), OverrideGroup::process},
-      {"stats", "FILE", outputGroup, "Times, counts and measurements as .json",
-       ValueSpec::jsonFile().bind(options.stats), OverrideGroup::process},
+      {OptionNames("stats-json", "stats"), "FILE", outputGroup,
+       "Writes times, counts and measurements as .json", ValueSpec::jsonFile().bind(options.stats),
+       OverrideGroup::process},
       {"checkpoint", "FILE", outputGroup,
        "Saves the samples so far to this checkpoint file (.film). The same command resumes from it "
        "after a stop or a crash, and ends with the same image; --samples, --noise, --seconds, "
@@ -362,12 +388,18 @@ struct RenderOptionTable {
        "Renders only the K-th of N shards of the image, to the file of --checkpoint, for fenestra "
        "merge; of a turntable, the frames of that shard",
        ValueSpec::text().bind(options, readShard), OverrideGroup::process},
-      {"progress", "KIND", outputGroup, "auto, bar, xml (Slicer's tags) or none",
+      {"progress", "KIND", outputGroup,
+       "Progress: bar, xml (Slicer's tags), none, or auto: a bar on a terminal",
        ValueSpec::choice(options.progress, {{"auto", ProgressMode::automatic},
                                             {"bar", ProgressMode::bar},
                                             {"xml", ProgressMode::xml},
                                             {"none", ProgressMode::none}}),
        OverrideGroup::process},
+      {OptionNames("quiet", 'q'), "", outputGroup, "Prints only warnings and errors",
+       ValueSpec::notInPanel().bind(options.quiet, readSwitch), OverrideGroup::process},
+      {OptionNames("verbose", 'v'), "", outputGroup,
+       "Also prints what was chosen, such as the transfer function, and the contrast of the focus",
+       ValueSpec::notInPanel().bind(options.verbose, readSwitch), OverrideGroup::process},
       {"xml", "", slicerGroup, "Print the XML description for 3D Slicer, and exit",
        ValueSpec::notInPanel(), OverrideGroup::process},
       {"echo", "", slicerGroup, "Print the parsed options", ValueSpec::notInPanel(),
@@ -386,14 +418,18 @@ const RenderOptionTable defaultTable; // serves as syntax; no value is stored in
 
 const CommandSyntax renderSyntax = {
     "render",
-    "Renders a medical volume by Monte Carlo path tracing, with a clipping surface that uncovers a "
-    "focus segment. The word \"render\" is optional. Other commands: fenestra inspect, fenestra "
-    "compare, fenestra phantom, fenestra serve, fenestra turntable, fenestra batch, fenestra "
-    "merge, fenestra describe.",
+    "Renders a medical volume by Monte Carlo path tracing. A clipping surface uncovers the "
+    "segments "
+    "of --focus. The word \"render\" is optional. Ctrl-C writes the image of the samples so far.",
     {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
                ".mrb)"}},
     defaultTable.rows,
+    {},
+    "Render an image of a volume (the default command)",
+    "knee.mrml --focus FemoralCartilage --quality high -o knee.png",
 };
+
+const std::span<const OptionGroup> renderGroups = groupTable;
 
 RenderOptions readOptions(const OptionValues& values) {
   RenderOptionTable table;

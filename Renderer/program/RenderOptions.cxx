@@ -5,6 +5,7 @@
 #include "base/Error.h"
 #include "files/images/ImageFormat.h"
 #include "files/slicer/SceneFiles.h"
+#include "program/Quality.h"
 #include "program/UsageError.h"
 #include "scene/NamedPresets.h"
 
@@ -69,7 +70,7 @@ std::string_view findNoEffectReason(Requires requirement, bool hasFocus, bool ha
   if ((requirement == Requires::surface || requirement == Requires::spline) && !isSurface)
     return "used only with --clip surface and ghost; omit it";
   if (requirement == Requires::spline && boundary != Boundary::spline)
-    return "used only with --boundary spline; omit it";
+    return "used only with --clip-boundary spline; omit it";
   return "";
 }
 
@@ -145,10 +146,10 @@ void resolveDenoising(const OptionValues& values, RenderOptions& options) {
         "--denoise: on requires the layer denoised or expected; add one to --layers, or "
         "omit --denoise");
   if (options.noiseTarget == NoiseTarget::denoised && !options.scene.features)
-    throw usageError("--noisetarget: denoised requires a denoised image; write a .png, or add "
+    throw usageError("--noise-target: denoised requires a denoised image; write a .png, or add "
                      "--denoise on");
-  if (values.hasNonDefault("noisetarget") && !values.has("noise"))
-    throw usageError("--noisetarget: used only with --noise; add --noise E, or omit it");
+  if (values.hasNonDefault("noise-target") && !values.has("noise"))
+    throw usageError("--noise-target: used only with --noise; add --noise E, or omit it");
   for (const char* layer : {"denoised", "expected"})
     if (values.has("layers") && options.layers.contains(layer) && options.denoise != Denoise::on)
       throw usageError("--layers: ", layer, " requires --denoise on; add it");
@@ -160,22 +161,34 @@ void resolveDenoising(const OptionValues& values, RenderOptions& options) {
 }
 
 /// Rejects options that a shard cannot use, since it is not a complete image.
-void checkShard(const OptionValues& values, const RenderOptions& options) {
+void checkShard(const OptionValues& values, const RenderOptions& options, bool isFromQuality) {
   if (!options.checkpoint)
     throw usageError("--shard: requires --checkpoint FILE, which the shard is saved to; add it");
-  for (const char* name : {"output", "surface", "stats", "layers"})
+  for (const char* name : {"output", "surface", "stats-json", "layers"})
     if (values.hasNonDefault(name))
       throw usageError("--", name, ": not for a shard; give it to fenestra merge");
   for (const char* name : {"noise", "seconds"})
     if (values.has(name))
-      throw usageError("--", name,
-                       ": depends on the complete image, and all shards need the same number of "
+      throw usageError(isFromQuality ? concat("--quality: sets --", name, ", which")
+                                     : concat("--", name, ":"),
+                       " depends on the complete image, and all shards need the same number of "
                        "samples; with --shard use --samples N");
 }
 
 } // namespace
 
-RenderOptions makeRenderOptions(const OptionValues& values) {
+RenderOptions resolveProgress(RenderOptions options) {
+  if (options.quiet && options.verbose)
+    throw usageError("--quiet and --verbose contradict each other; give only one");
+  if (options.returnValues && options.progress == ProgressMode::automatic)
+    options.progress = ProgressMode::xml;
+  if (options.quiet && options.progress != ProgressMode::xml)
+    options.progress = ProgressMode::none;
+  return options;
+}
+
+RenderOptions makeRenderOptions(const OptionValues& given) {
+  const OptionValues values = expandQuality(given);
   RenderOptions options = readOptions(values);
   RenderRequest& scene = options.scene;
   scene.input = *values.text("INPUT");
@@ -187,7 +200,7 @@ RenderOptions makeRenderOptions(const OptionValues& values) {
     options.settings.samples = static_cast<std::uint64_t>(unlimited);
   options.inputs = listInputFiles(values);
   if (options.isShard) {
-    checkShard(values, options);
+    checkShard(values, options, given.has("quality"));
   } else if (options.outputs.empty()) {
     options.outputs.push_back(makeDefaultOutput(scene.input));
     options.outputNaming = NameOrigin::standard;
@@ -195,9 +208,7 @@ RenderOptions makeRenderOptions(const OptionValues& values) {
   resolveLayers(values, options);
   resolveDenoising(values, options);
   scene.measure = options.stats.has_value();
-  if (options.returnValues && options.progress == ProgressMode::automatic)
-    options.progress = ProgressMode::xml;
-  return options;
+  return resolveProgress(std::move(options));
 }
 
 RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene) {

@@ -37,6 +37,8 @@ struct RenderOptions {
   /// all text on standard error as an error.
   std::optional<std::filesystem::path> returnValues = {};
   ProgressMode progress = ProgressMode::automatic;
+  bool quiet = false;                     ///< no progress and no result line
+  bool verbose = false;                   ///< also facts about the scene
   std::optional<std::string> preset = {}; ///< the organ preset's name
 
   /// True if an `.exr` or `.nrrd` gets this layer, which the denoiser makes.
@@ -52,6 +54,13 @@ inline constexpr double unlimited = 0x1p40; ///< upper limit of samples and boun
 
 extern const CommandSyntax renderSyntax;
 
+/// A heading of render's options, and the word that selects it: `fenestra --help clip`.
+struct OptionGroup {
+  const char* name;
+  const char* heading;
+};
+extern const std::span<const OptionGroup> renderGroups;
+
 /// True if the image depends on the option, false for files and execution.
 inline bool isImageOption(const Option& option) {
   return option.overrideGroup != OverrideGroup::process;
@@ -65,6 +74,9 @@ bool isAppearanceOption(const Option& option);
 /// Stores each value where its table row says, without further checks. Throws Error (usage) for
 /// values out of range.
 RenderOptions readOptions(const OptionValues& values);
+
+/// Resolves progress for quiet commands. Throws Error (usage) for both quiet and verbose.
+RenderOptions resolveProgress(RenderOptions options);
 
 /// Complete options from all values. Throws Error (usage) for values out of range and for
 /// contradictory options.

@@ -8,6 +8,7 @@
 #include "io/MessageText.h"
 #include "program/FileNames.h"
 #include "program/MergedOptions.h"
+#include "program/Messages.h"
 #include "program/about/Version.h"
 
 #include <algorithm>
@@ -101,6 +102,11 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs) {
   for (const auto& file : {options.stats, options.returnValues, options.checkpoint})
     if (file)
       outputs.add(*file);
+}
+
+void printFacts(const PreparedScene& scene) {
+  for (const std::string& fact : scene.choices())
+    printLine(fact);
 }
 
 /// Compares with physical memory, since Linux grants more and kills the process when it is used.

@@ -21,6 +21,9 @@ RenderJob makeRenderJob(const OptionValues& given);
 /// output.
 void declareOutputs(const RenderOptions& options, Outputs& outputs);
 
+/// Prints what was chosen for the scene (PreparedScene::choices), one fact per line.
+void printFacts(const PreparedScene& scene);
+
 /// Throws Error (output) if the image does not fit into memory.
 void checkMemory(const RenderRequest& scene);
 

@@ -153,10 +153,10 @@ std::vector<std::string> RowManifest::arguments(int threads) const {
   words.insert(words.end(), m_row.arguments.begin(), m_row.arguments.end());
   for (const fs::path& picture : m_images)
     words.push_back(concat("--output=", picture));
-  words.push_back(concat("--stats=", rowStatsPath(m_row, m_folder.parent_path())));
+  words.push_back(concat("--stats-json=", rowStatsPath(m_row, m_folder.parent_path())));
   words.push_back(concat("--checkpoint=", m_checkpoint));
   words.push_back(concat("--threads=", threads));
-  words.insert(words.end(), {"--progress=none", "--", m_row.input});
+  words.insert(words.end(), {"--quiet", "--", m_row.input});
   return words;
 }
 

@@ -154,10 +154,12 @@ const CommandSyntax& serveSyntax() {
       "options of fenestra render.",
       renderSyntax.positionals,
       renderSyntax.options,
-      {{{"stats", "returnparameterfile", "progress", "xml", "echo"},
+      {{{"stats-json", "returnparameterfile", "progress", "quiet", "verbose", "xml", "echo"},
         "not for serve, which reports on standard output; omit it"},
        {{"surface", "checkpoint", "shard"},
         "not for serve, which only writes images; use fenestra render"}},
+      "Keep a scene loaded, and render previews of changes",
+      "serve scene.mrb --size 256x256 -o preview.png",
   };
   return syntax;
 }

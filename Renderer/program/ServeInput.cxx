@@ -7,11 +7,13 @@
 #include "program/CommandLine.h"
 #include "program/ErrorAdvice.h"
 #include "program/MergedOptions.h"
+#include "program/Quality.h"
 #include "program/Stop.h"
 #include "program/UsageError.h"
 #include "scene/NamedPresets.h"
 
 #include <cstdio>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -70,28 +72,33 @@ OptionValues applyChange(const json& change, const OptionValues& values) {
   if (!change.is_object())
     throw usageError("expected a JSON object of options, as {\"view\": \"left\"}");
   OptionValues result = values;
+  if (const auto quality = change.find("quality"); quality != change.end() && !quality->is_null())
+    removeQualityOptions(result);
+  std::set<std::string> names;
   for (const auto& [name, value] : change.items()) {
     if (name == "id")
       continue;
     const Option* option = findOption(renderSyntax.options, name);
     if (!option) {
-      const std::string likely = findNearest(name, listNames(renderSyntax.options));
+      const std::string likely = findLikelyOption(name, renderSyntax.options);
       throw usageError(toOneLine(name), ": unknown option",
                        likely.empty() ? "" : concat("; did you mean ", likely, "?"));
     }
     if (!isImageOption(*option))
       throw usageError(name, ": cannot change while serving; start another server");
-    result.remove(name);
+    if (!names.insert(option->name).second)
+      throw usageError(name, ": given more than once; give it once");
+    result.remove(option->name);
     if (option->spec.canRepeat && value.is_array()) {
       for (const json& item : value)
-        result.add(name, toOptionText(name, item));
+        result.add(option->name, toOptionText(name, item));
       continue;
     }
     const std::string text = value.is_null()    ? ""
                              : value.is_array() ? toOptionList(name, value)
                                                 : toOptionText(name, value);
     if (!text.empty())
-      result.add(name, text);
+      result.add(option->name, text);
   }
   return result;
 }

@@ -53,17 +53,18 @@ void addOption(pugi::xml_node group, const Option& option) {
     parameter.append_attribute("type") = spec.image.c_str();
   if (!spec.extensions.empty())
     parameter.append_attribute("fileExtensions") = spec.extensions.c_str();
-  addText(parameter, "name", option.name);
-  addText(parameter, "longflag", option.name);
-  addText(parameter, "label", makeLabel(option.name));
+  addText(parameter, "name", option.oneWord);
+  addText(parameter, "longflag", option.oneWord);
+  addText(parameter, "label", makeLabel(option.oneWord));
   addText(parameter, "description", option.help());
   if (!spec.channel.empty())
     addText(parameter, "channel", spec.channel);
   if (!spec.defaultValue.empty())
     addText(parameter, "default", spec.defaultValue);
   addConstraints(parameter, spec);
-  for (const std::string& word : spec.choices)
-    addText(parameter, "element", word);
+  if (findSlicerType(spec) == spec.type)
+    for (const std::string& word : spec.choices)
+      addText(parameter, "element", word);
 }
 
 void addInput(pugi::xml_node group, const Positional& input) {

@@ -4,6 +4,7 @@
 #include "io/Outputs.h"
 #include "io/TempFiles.h"
 #include "program/ErrorAdvice.h"
+#include "program/Messages.h"
 
 #include <csignal>
 #include <ctime>
@@ -35,12 +36,15 @@ void printOnce(std::string_view line) {
   static std::atomic<bool> isSaid = false;
   if (isSaid.exchange(true))
     return;
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
+  for (const std::string_view text : {barEraser(), line})
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
 /// Async-signal-safe.
 void endNow() {
-  if (firstSignal == SIGPIPE)
+  if (firstSignal == SIGPIPE && isClosedOutputAllowed())
+    ; // its reader has seen enough
+  else if (firstSignal == SIGPIPE)
     printOnce("fenestra: standard output was closed\n");
   else if (hasPlacedResults())
     printOnce("fenestra: stopped on request\n");
@@ -86,7 +90,9 @@ bool isStopRequested() {
 }
 
 int stopStatus() {
-  return firstSignal == SIGPIPE ? exitStatus(ErrorKind::output) : stoppedStatus;
+  if (firstSignal != SIGPIPE)
+    return stoppedStatus;
+  return isClosedOutputAllowed() ? 0 : exitStatus(ErrorKind::output);
 }
 
 void endProcess(int status) {

@@ -15,8 +15,8 @@ void installStopHandlers();
 /// True after any of these signals.
 bool isStopRequested();
 
-/// Exit status after a signal: stoppedStatus, or that of an output error if standard output is
-/// closed.
+/// Exit status after a signal: stoppedStatus; if standard output was closed, that of an output
+/// error, or 0 after allowClosedOutput().
 int stopStatus();
 
 /// Ends the process from any thread, but never while results are being renamed into place. Removes

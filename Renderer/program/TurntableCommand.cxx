@@ -5,11 +5,11 @@
 #include "io/InputRegistry.h"
 #include "io/JsonNode.h"
 #include "io/Locks.h"
-#include "io/MessageText.h"
 #include "io/SystemErrors.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/ErrorAdvice.h"
+#include "program/Messages.h"
 #include "program/Progress.h"
 #include "program/RenderSteps.h"
 #include "program/Stop.h"
@@ -18,7 +18,6 @@
 
 #include <chrono>
 #include <future>
-#include <iostream>
 #include <list>
 #include <map>
 #include <set>
@@ -46,6 +45,8 @@ public:
     m_outputs.checkInputs();                        // now including files that the scene refers to
     m_manifest.setInputs(m_view.scene);
     m_manifest.write(m_outputs);
+    if (m_options.render.verbose)
+      printFacts(m_view.scene);
     if (!m_manifest.warning().empty())
       warn(m_manifest.warning());
     renderFrames();
@@ -78,7 +79,7 @@ private:
   /// Prints each distinct warning once.
   void warn(const std::string& warning) {
     if (m_warnings.insert(warning).second)
-      std::cerr << "fenestra: warning: " << toOneLine(warning) << '\n';
+      printWarning(warning);
   }
 
   void renderFrames() {
@@ -181,13 +182,12 @@ private:
 
   void report() const {
     const bool isComplete = finishedCount() == frameCount();
-    std::cout << toOneLine(
-                     concat(m_options.images(m_options.first()).front(), " to ",
-                            m_options.images(m_options.end() - 1).front().filename(), ": ",
-                            finishedCount(), " of ", frameCount(), " frames, ", renderedCount(),
-                            " rendered now, ", toString(m_total.seconds(), 3), " s",
-                            isComplete ? "" : " (stopped on request; the same command resumes)"))
-              << std::endl;
+    if (!m_options.render.quiet)
+      printLine(concat(m_options.images(m_options.first()).front(), " to ",
+                       m_options.images(m_options.end() - 1).front().filename(), ": ",
+                       finishedCount(), " of ", frameCount(), " frames, ", renderedCount(),
+                       " rendered now, ", toString(m_total.seconds(), 3), " s",
+                       isComplete ? "" : " (stopped on request; the same command resumes)"));
   }
 
   const TurntableOptions& m_options;

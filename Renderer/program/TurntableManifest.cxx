@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 /// Arguments that the images of the frames depend on.
 std::vector<std::string> listArguments(const OptionValues& values, const fs::path& folder) {
   OptionValues request = values;
-  for (const char* name : {"threads", "progress", "stats", "restart"})
+  for (const char* name : {"threads", "progress", "quiet", "verbose", "stats-json", "restart"})
     request.remove(name);
   for (const char* name : {"frames", "degrees"})
     if (!request.has(name))

@@ -36,12 +36,14 @@ const CommandSyntax& turntableSyntax() {
       "Renders a rotation of the camera around its target, about the up axis: --output turn.png "
       "gives turn_0000.png, turn_0001.png and so on, each as by fenestra render. The file "
       "turn.turntable.json records the finished frames, so that the same command resumes after a "
-      "stop. --samples, --seconds and --noise are per frame; --stats covers all frames.",
+      "stop. --samples, --seconds and --noise are per frame; --stats-json covers all frames.",
       renderSyntax.positionals,
       options,
       {{{"surface", "returnparameterfile", "xml", "echo"},
         "only for a single image; use fenestra render, or omit it"},
        {{"checkpoint"}, "not needed, since a turntable resumes by itself; omit it"}},
+      "Render a rotation as numbered frames",
+      "turntable knee.mrml --focus FemoralCartilage -o turn.png",
   };
   return syntax;
 }

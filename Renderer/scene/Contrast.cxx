@@ -87,8 +87,8 @@ std::string summary(const FocusContrast& contrast) {
   const std::string desaturated = contrast.saturation < 1.0 ? "; surroundings desaturated to " +
                                                                   toString(contrast.saturation, 3)
                                                             : "";
-  return concat("deltaE ", toString(contrast.contrast->deltaE[0], 3), " (color-blind ",
-                toString(contrast.contrast->colorBlind(), 3), desaturated, ")");
+  return concat("contrast of the focus: dE ", toString(contrast.contrast->deltaE[0], 3),
+                " (color-blind ", toString(contrast.contrast->colorBlind(), 3), ")", desaturated);
 }
 
 } // namespace fenestra

@@ -52,7 +52,7 @@ inline constexpr double mutedSaturation = 0.35, graySaturation = 0.0;
 FocusContrast chooseSaturation(const std::optional<double>& requested, const Mask& focus,
                                const Volume& volume, const TransferFunction& transfer);
 
-/// One-line summary of contrast and saturation; empty without a contrast.
+/// "contrast of …": one line on contrast and saturation; empty without a contrast.
 std::string summary(const FocusContrast& contrast);
 
 } // namespace fenestra

@@ -137,34 +137,33 @@ UpdatedStages PreparedScene::updatedStages() const {
           m_labelWeights.isUpdated()};
 }
 
-std::string PreparedScene::choices() const {
+std::vector<std::string> PreparedScene::choices() const {
   const RenderRequest& r = m_request;
-  const char* const from = r.transferModality ? " (preset)" : "";
-  std::vector<std::string> parts = {"look: " + transferName() + from};
+  const char* const from = r.transferModality         ? " (by the preset)"
+                           : m_transfer->isByModality ? " (by modality)"
+                                                      : "";
+  std::vector<std::string> facts = {concat("transfer function: ", transferName(), from)};
   if (r.environment || r.environmentMap)
-    parts.push_back("lights: environment");
+    facts.emplace_back("lights: environment");
   else
-    parts.push_back("lights: " + (r.lights.starts_with('{') ? "inline JSON" : r.lights));
-  std::vector<std::string> labels;
+    facts.push_back("lights: " + (r.lights.starts_with('{') ? "inline JSON" : r.lights));
   if (m_segments.result() && !m_segments->segmentation.namesSource().empty())
-    labels.push_back("names from " + m_segments->segmentation.namesSource());
+    facts.push_back("names of segments: " + m_segments->segmentation.namesSource());
   if (m_focus->mask && m_focus->mask->smoothing > 0.0)
-    labels.push_back("smoothed " + toString(m_focus->mask->smoothing, 3) + " mm");
-  if (!labels.empty())
-    parts.push_back("labels: " + join(labels, ", "));
+    facts.push_back(concat("segments smoothed by ", toString(m_focus->mask->smoothing, 3), " mm"));
   if (tint()) {
     const std::size_t colors = tint()->albedo.size() - 1;
-    parts.push_back(concat("materials: ", m_materials->source, ", ", colors,
+    facts.push_back(concat("materials: ", m_materials->source, ", ", colors,
                            colors == 1 ? " color" : " colors",
                            m_plan->hasDetectedSkin() ? ", skin detected" : ""));
   }
   const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
   if (softness > 0.0)
-    parts.push_back("clip: soft over " + toString(softness, 3) + " mm");
+    facts.push_back(concat("cut softened over ", toString(softness, 3), " mm"));
   if (const std::string text = tintContrast() ? summary(*tintContrast()) : summary(contrast());
       !text.empty())
-    parts.push_back("contrast: " + text);
-  return join(parts, "; ");
+    facts.push_back(text);
+  return facts;
 }
 
 std::vector<Message> PreparedScene::warnings() const {

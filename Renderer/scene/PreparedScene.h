@@ -68,9 +68,9 @@ public:
   StageSeconds seconds() const;
   UpdatedStages updatedStages() const;
   std::vector<Message> warnings() const;
-  /// One-line summary of transfer function, lights and labels: what was chosen by default, and from
-  /// which source.
-  std::string choices() const;
+  /// What was chosen for transfer function, lights, labels and colors, one line each, such as
+  /// "lights: cinema".
+  std::vector<std::string> choices() const;
   /// Files read for the stages of this scene, including shared stages.
   std::vector<std::string> files() const;
   /// Background of a Slicer scene; empty for other inputs.

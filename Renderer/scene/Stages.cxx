@@ -110,7 +110,7 @@ TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>&
   const std::optional<std::string> preset = chooseTransferPreset(volume);
   if (!preset)
     return {makeRelativeTransfer(volume), "by the volume's range", warnings};
-  return {findTransfer(*preset, Input({})).transfer.function, *preset, warnings};
+  return {findTransfer(*preset, Input({})).transfer.function, *preset, warnings, true};
 }
 
 /// The requested plane, else a plane fitted to the focus.

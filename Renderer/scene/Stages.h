@@ -38,6 +38,7 @@ struct TransferChoice {
   TransferFunction function;
   std::string source; ///< a file, a preset, a node, or "by the volume's range"
   std::vector<Message> warnings = {};
+  bool isByModality = false; ///< a preset, chosen as a default
 };
 /// Chooses the transfer function: `named`, unless `modality` is not the volume's, else the
 /// scene's, else a default for the volume. Then shifts it by `shift` and scales its extinction by

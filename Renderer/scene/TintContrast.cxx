@@ -305,20 +305,21 @@ std::string summary(const TintContrast& chosen) {
     return "";
   const Contrast& contrast = *chosen.contrast;
   const ColorAdjustment &adjustment = chosen.adjustment, neutral;
-  std::vector<std::string> parts = {"color-blind " + toString(contrast.colorBlind(), 3)};
+  std::string text = concat("contrast of ", sanitize(chosen.segment), " vs ",
+                            sanitize(chosen.neighbor), ": dE ", toString(contrast.deltaE[0], 3),
+                            " (color-blind ", toString(contrast.colorBlind(), 3), ")");
   const auto add = [&](const std::string& what, double ColorAdjustment::*member) {
     if (adjustment.*member != neutral.*member)
-      parts.push_back(what + toString(adjustment.*member, 3));
+      text += concat("; ", what, " ", toString(std::abs(adjustment.*member), 3));
   };
-  add("context chroma x ", &ColorAdjustment::contextSaturation);
-  add("context lightness blended by ", &ColorAdjustment::contextLightness);
-  add(adjustment.focusLightness < 0.0 ? "focus lightness " : "focus lightness +",
+  add("surroundings' saturation times", &ColorAdjustment::contextSaturation);
+  add("surroundings' lightness evened by", &ColorAdjustment::contextLightness);
+  add(adjustment.focusLightness < 0.0 ? "focus darkened by" : "focus lightened by",
       &ColorAdjustment::focusLightness);
-  add("focus chroma x ", &ColorAdjustment::focusChroma);
-  add(concat("focus blended with ", accentColors[adjustment.accent].name, " by "),
+  add("focus's saturation times", &ColorAdjustment::focusChroma);
+  add(concat("focus blended with ", accentColors[adjustment.accent].name, " by"),
       &ColorAdjustment::focusAccent);
-  return concat("deltaE ", toString(contrast.deltaE[0], 3), " between ", sanitize(chosen.segment),
-                " and ", sanitize(chosen.neighbor), " (", join(parts, ", "), ")");
+  return text;
 }
 
 Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustment& adjustment,

@@ -88,7 +88,7 @@ TintContrast adjustContrast(const std::vector<ComponentInterface>& interfaces, c
                             const Tint& tint, const MaterialTable& table,
                             const TransferFunction& transfer, double saturation);
 
-/// One-line summary of contrast and adjustment; empty without a contrast.
+/// "contrast of …": one line on contrast and adjustment; empty without a contrast.
 std::string summary(const TintContrast& contrast);
 
 /// The tint with adjusted colors.

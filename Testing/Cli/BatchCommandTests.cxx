@@ -48,8 +48,8 @@ TEST_F(BatchCommand, RowsEqualThoseOfRender) {
   const Outcome outcome =
       runBatch({"--formats", "exr", "--workers", "2", "--threads", "2", "--progress", "none"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("out: 2 of 2 rows done, 2 rendered now"), std::string::npos)
-      << outcome.out;
+  EXPECT_NE(outcome.result.find("out: 2 of 2 rows done, 2 rendered now"), std::string::npos)
+      << outcome.result;
   const std::vector<std::pair<std::string, Arguments>> rows = {
       {"left", {"--focus", "A", "--view", "left"}},
       {"Bone, left", {"--focus", "A", "--samples", "3"}}};
@@ -84,7 +84,7 @@ TEST_F(BatchCommand, FailedRowsDoNotAffectOthers) {
   EXPECT_NE(outcome.err.find("t.csv: 3 of 4 rows failed, the first a: torn.nrrd: "),
             std::string::npos)
       << outcome.err;
-  EXPECT_NE(outcome.out.find("out: 1 of 4 rows done, 4 rendered now"), std::string::npos);
+  EXPECT_NE(outcome.result.find("out: 1 of 4 rows done, 4 rendered now"), std::string::npos);
   EXPECT_TRUE(findSummary("a").starts_with("a,failed,3,")) << findSummary("a");
   EXPECT_TRUE(findSummary("b").starts_with("b,failed,3,")) << findSummary("b");
   EXPECT_TRUE(findSummary("c").starts_with("c,failed,2,")) << findSummary("c");
@@ -97,7 +97,8 @@ TEST_F(BatchCommand, FailedRowsDoNotAffectOthers) {
   folder.write("torn.nrrd", NrrdText().encode(makeRamp()));
   folder.write("nowhere.nrrd", NrrdText().encode(makeRamp()));
   const Outcome again = runBatch();
-  EXPECT_NE(again.out.find("3 of 4 rows done, 3 rendered now"), std::string::npos) << again.out;
+  EXPECT_NE(again.result.find("3 of 4 rows done, 3 rendered now"), std::string::npos)
+      << again.result;
 }
 
 TEST_F(BatchCommand, RendersOnlyRowsWhoseOptionsOrFilesChanged) {
@@ -112,9 +113,9 @@ TEST_F(BatchCommand, RendersOnlyRowsWhoseOptionsOrFilesChanged) {
   const auto expectRendered = [&](int count, const Arguments& more = {}) {
     const Outcome outcome = runBatch(more);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.out.find("3 of 3 rows done, " + std::to_string(count) + " rendered now"),
+    EXPECT_NE(outcome.result.find("3 of 3 rows done, " + std::to_string(count) + " rendered now"),
               std::string::npos)
-        << outcome.out;
+        << outcome.result;
   };
   expectRendered(0, {"--workers", "3", "--threads", "1"});
   folder.write("t.csv", rows + "7\n");
@@ -136,14 +137,14 @@ TEST_F(BatchCommand, ResumesAfterAKillWithTheSameFiles) {
   for (char row = 'a'; row < 'g'; ++row) // the last takes longer, so that the kill is earlier
     table += std::string(1, row) + ",volume.nrrd," + (row == 'f' ? "10000" : "2") + "\n";
   folder.write("t.csv", table);
-  const Arguments arguments = makeArguments({"--workers", "2"});
+  const Arguments arguments = makeArguments({"--workers", "2", "--verbose"});
   std::string output;
   {
     Process process(arguments, folder.path());
-    ASSERT_TRUE(process.waitForOutput("b: [0-9.e-]+ s"));
+    ASSERT_TRUE(process.waitForMessage("b: [0-9.e-]+ s"));
     process.send(SIGKILL);
     process.wait();
-    output = process.output();
+    output = process.messages();
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
   std::map<std::string, std::string> before; // statistics of the finished rows
@@ -152,8 +153,8 @@ TEST_F(BatchCommand, ResumesAfterAKillWithTheSameFiles) {
       before[std::string(1, row)] = readOutput(std::string(1, row) + "/" + row + ".json");
   const Outcome rest = run(arguments, folder.path());
   ASSERT_EQ(rest.status, 0) << rest.err;
-  EXPECT_NE(rest.out.find("6 of 6 rows done, "), std::string::npos) << rest.out;
-  EXPECT_EQ(rest.out.find("6 rendered now"), std::string::npos) << rest.out;
+  EXPECT_NE(rest.result.find("6 of 6 rows done, "), std::string::npos) << rest.result;
+  EXPECT_EQ(rest.result.find("6 rendered now"), std::string::npos) << rest.result;
   for (const auto& [row, stats] : before)
     EXPECT_EQ(readOutput(row + "/" + row + ".json"), stats) << "a finished row was rendered again";
   EXPECT_EQ(listFiles(folder / "out").size(), 2U + 6 * (1 + 3)) << "unexpected files remain";
@@ -177,8 +178,8 @@ TEST_F(BatchCommand, ALongRowResumesFromItsCheckpoint) {
   const auto countResumedPaths = [&](const std::string& output, const std::string& samples) {
     const Outcome outcome = run(arguments(output, samples), folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.out.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
-        << outcome.out;
+    EXPECT_NE(outcome.result.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
+        << outcome.result;
     EXPECT_EQ(listFiles(folder / output / "a").size(), 4U) << "unexpected files remain";
     return nlohmann::json::parse(readBytes(folder / output / "a/a.json")).value("pathsFromFilm", 0);
   };
@@ -213,13 +214,13 @@ TEST_F(BatchCommand, StopsOnRequestAndReportsTheRows) {
                         "b,volume.nrrd,1000000,64x64\nc,volume.nrrd,2,16x16\n");
   // When the row's process starts, and while it renders.
   for (const char* file : {"out/b/b.study.json", "out/b/b.film"}) {
-    Process process({"batch", "t.csv", "--output", "out", "--restart"}, folder.path());
-    ASSERT_TRUE(process.waitForOutput("a: "));
+    Process process({"batch", "t.csv", "--output", "out", "--restart", "-v"}, folder.path());
+    ASSERT_TRUE(process.waitForMessage("a: "));
     ASSERT_TRUE(process.waitUntil([&] { return std::filesystem::exists(folder / file); }));
     process.send(SIGTERM);
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.status, 5) << outcome.err;
-    EXPECT_NE(outcome.out.find("1 of 3 rows done"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.result.find("1 of 3 rows done"), std::string::npos) << outcome.messages;
     EXPECT_TRUE(findSummary("b").starts_with("b,stopped,5,,,")) << findSummary("b");
     EXPECT_TRUE(findSummary("c").starts_with("c,missing,,")) << findSummary("c");
   }
@@ -231,8 +232,8 @@ TEST_F(BatchCommand, SubsetsOfRowsAreCompletedByTheFullCommand) {
     ASSERT_EQ(runBatch({"--rows", part}).status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
   const Outcome complete = runBatch();
-  EXPECT_NE(complete.out.find("3 of 3 rows done, 0 rendered now"), std::string::npos)
-      << complete.out;
+  EXPECT_NE(complete.result.find("3 of 3 rows done, 0 rendered now"), std::string::npos)
+      << complete.result;
   EXPECT_TRUE(std::filesystem::exists(folder / "out/study.png"));
 }
 

@@ -55,9 +55,9 @@ TEST_F(CheckpointCommand, FinishedCheckpointGivesTheSameImage) {
 
 TEST_F(CheckpointCommand, StoppedRenderResumesBitIdentically) {
   const auto arguments = [](const std::string& name) {
-    return Arguments{"volume.nrrd", "--size",       "64x64",         "--samples", "600",
-                     "--noise",     "0.1",          "--noisetarget", "raw",       "--progress",
-                     "xml",         "--checkpoint", name + ".film",  "--output",  name + ".exr"};
+    return Arguments{"volume.nrrd", "--size",       "64x64",          "--samples", "600",
+                     "--noise",     "0.1",          "--noise-target", "raw",       "--progress",
+                     "xml",         "--checkpoint", name + ".film",   "--output",  name + ".exr"};
   };
   const Outcome once = run(arguments("once"), folder.path());
   ASSERT_EQ(once.status, 0) << once.err;
@@ -66,7 +66,7 @@ TEST_F(CheckpointCommand, StoppedRenderResumesBitIdentically) {
   process.send(SIGTERM);
   const Outcome stopped = process.wait();
   ASSERT_EQ(stopped.status, 5) << stopped.err;
-  EXPECT_NE(stopped.out.find("the same command resumes"), std::string::npos) << stopped.out;
+  EXPECT_NE(stopped.result.find("the same command resumes"), std::string::npos) << stopped.result;
   const Outcome rest = run(arguments("two"), folder.path());
   ASSERT_EQ(rest.status, 0) << rest.err;
   expectSameImage(folder / "once.exr", folder / "two.exr");

@@ -102,25 +102,28 @@ TEST_F(DescribeCommand, ManualPageHasAllSectionsAndOptions) {
        {"render", "inspect", "turntable", "serve", "compare", "phantom", "describe"}) {
     EXPECT_NE(outcome.out.find(std::string("\n.It Nm Cm ") + command + " Ar "), std::string::npos);
     const std::string help = run({command, "--help"}, folder.path()).out;
-    static const std::regex option("\n  --([a-z]+)");
-    for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it)
-      EXPECT_TRUE(std::regex_search(outcome.out, std::regex("\n.It Fl Fl " + it->str(1) + "[ \n]")))
-          << command << " " << it->str(1);
+    static const std::regex option("\n  (?:-([a-z]), |    )--([a-z-]+)");
+    for (std::sregex_iterator it(help.begin(), help.end(), option), end; it != end; ++it) {
+      const std::string letter = it->str(1).empty() ? "" : "Fl " + it->str(1) + " , ";
+      EXPECT_TRUE(std::regex_search(
+          outcome.out, std::regex("\n.It " + letter + "Fl Fl " + it->str(2) + "[ \n]")))
+          << command << " " << it->str(2);
+    }
   }
 }
 
 TEST_F(DescribeCommand, HelpOmitsUnsupportedOptions) {
   using Pair = std::pair<const char*, const char*>;
   for (const auto& [command, option] :
-       {Pair("serve", "--stats"), Pair("serve", "--checkpoint"), Pair("turntable", "--surface"),
-        Pair("turntable", "--checkpoint")}) {
+       {Pair("serve", "--stats-json"), Pair("serve", "--checkpoint"),
+        Pair("turntable", "--surface"), Pair("turntable", "--checkpoint")}) {
     expectErrors(
         {{option, {command, "volume.nrrd", option, "a.json"}, 2, std::string(option) + ":"}},
         folder.path());
-    EXPECT_EQ(run({command, "--help"}, folder.path()).out.find(concat("\n  ", option, " ")),
+    EXPECT_EQ(run({command, "--help"}, folder.path()).out.find(concat("\n      ", option, " ")),
               std::string::npos);
   }
-  EXPECT_NE(run({"render", "--help"}, folder.path()).out.find("\n  --checkpoint "),
+  EXPECT_NE(run({"render", "--help"}, folder.path()).out.find("\n      --checkpoint "),
             std::string::npos);
 }
 

@@ -62,8 +62,8 @@ TEST_F(FilterCommand, OnAddsChannelsToTheRawOnes) {
 }
 
 TEST_F(FilterCommand, AutoDenoisesDisplayImagesAndRecordsIt) {
-  const Arguments all = {"--samples", "2",        "--output", "a.png",   "--output",
-                         "a.tif",     "--output", "a.exr",    "--stats", "s.json"};
+  const Arguments all = {"--samples", "2",        "--output", "a.png",        "--output",
+                         "a.tif",     "--output", "a.exr",    "--stats-json", "s.json"};
   render(all);
   const std::string png = readBytes(folder / "a.png"), tiff = readBytes(folder / "a.tif");
   EXPECT_NE(png.find("denoised by local linear regression"), std::string::npos);
@@ -85,7 +85,7 @@ TEST_F(FilterCommand, AutoDenoisesDisplayImagesAndRecordsIt) {
 }
 
 TEST_F(FilterCommand, OneSampleIsDenoisedWithoutAnErrorEstimate) {
-  render({"--samples", "1", "--denoise", "on", "--output", "a.exr", "--stats", "s.json"});
+  render({"--samples", "1", "--denoise", "on", "--output", "a.exr", "--stats-json", "s.json"});
   const Image image = readImage(folder / "a.exr");
   EXPECT_TRUE(image.find("denoised.R"));
   EXPECT_FALSE(image.find("denoised.error.R"));
@@ -93,7 +93,7 @@ TEST_F(FilterCommand, OneSampleIsDenoisedWithoutAnErrorEstimate) {
 }
 
 TEST_F(FilterCommand, NoiseLimitsTheDenoisedNoiseIfAllOutputsAreDisplayImages) {
-  const Arguments noise = {"--noise", "0.15", "--stats", "s.json", "--output", "a.png"};
+  const Arguments noise = {"--noise", "0.15", "--stats-json", "s.json", "--output", "a.png"};
   render(noise);
   const std::uint64_t few = readStats()["samplesPerPixel"]["max"];
   EXPECT_EQ(readStats()["samplesPerPixel"]["min"], few);
@@ -106,7 +106,7 @@ TEST_F(FilterCommand, NoiseLimitsTheDenoisedNoiseIfAllOutputsAreDisplayImages) {
   render(raw);
   EXPECT_LE(readStats()["noise"], 0.15);
   Arguments filtered = raw;
-  filtered.insert(filtered.end(), {"--noisetarget", "denoised"});
+  filtered.insert(filtered.end(), {"--noise-target", "denoised"});
   render(filtered);
   EXPECT_EQ(readStats()["samplesPerPixel"]["max"], few);
 }
@@ -130,11 +130,11 @@ TEST_F(FilterCommand, ContradictionsAreRejected) {
     EXPECT_EQ(outcome.status, 2);
     EXPECT_NE(outcome.err.find(hint), std::string::npos) << outcome.err;
   };
-  expectUsageError({"--noise", "0.1", "--noisetarget", "denoised", "--denoise", "off"},
+  expectUsageError({"--noise", "0.1", "--noise-target", "denoised", "--denoise", "off"},
                    "--denoise on");
-  expectUsageError({"--noise", "0.1", "--noisetarget", "filtered", "--output", "a.exr"},
+  expectUsageError({"--noise", "0.1", "--noise-target", "filtered", "--output", "a.exr"},
                    "--denoise on");
-  expectUsageError({"--noisetarget", "raw"}, "--noise E");
+  expectUsageError({"--noise-target", "raw"}, "--noise E");
   expectUsageError({"--layers", "denoised,color", "--output", "a.exr"}, "--denoise on");
   expectUsageError({"--layers", "color", "--denoise", "on", "--output", "a.exr"}, "--layers");
 }

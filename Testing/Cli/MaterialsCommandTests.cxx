@@ -30,7 +30,7 @@ void expectOnlyColors(Arguments arguments, const std::string& materials = "libra
   Arguments plain = arguments;
   plain.insert(plain.end(), {"--materials", "none"});
   const Image none = renderImage(plain, folder.path());
-  arguments.insert(arguments.end(), {"--materials", materials, "--stats", "s.json"});
+  arguments.insert(arguments.end(), {"--materials", materials, "--stats-json", "s.json"});
   const Image tinted = renderImage(arguments, folder.path());
   EXPECT_EQ(none.channels.size(), tinted.channels.size());
   for (const char* name : {"A", "Z", "clip.Z", "normal.X", "samples.N"})
@@ -108,13 +108,12 @@ protected:
   }
 };
 
-TEST_F(MaterialsCommand, NeedNoFocusAndAppearInTheStatusLine) {
-  const Outcome outcome =
-      run(makeArguments({"--materials", "library", "--output", "a.png"}), folder.path());
+TEST_F(MaterialsCommand, NeedNoFocusAndAreAFact) {
+  const Outcome outcome = run(
+      makeArguments({"--materials", "library", "--output", "a.png", "--verbose"}), folder.path());
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "");
-  EXPECT_EQ(outcome.statusLine,
-            "look: by the volume's range; lights: cinema; materials: library, 1 color");
+  EXPECT_EQ(outcome.err, "transfer function: by the volume's range\nlights: cinema\n"
+                         "materials: library, 1 color\n");
 }
 
 /// The library has a material for "Bone, left", but none for "Void".
@@ -127,11 +126,11 @@ TEST_F(MaterialsCommand, DefaultIsAutoIfTheMaterialOfTheFocusIsKnown) {
   EXPECT_NE(automatic, none);
   EXPECT_EQ(renderChannels({"--focus", "A"}), automatic);
   EXPECT_EQ(renderChannels({"--focus", "A,B"}), automatic);
-  EXPECT_EQ(renderChannels({"--focus", "A", "--contextsaturation", "1"}),
-            renderChannels({"--focus", "A", "--contextsaturation", "1", "--materials", "none"}));
-  const Outcome outcome = run(makeArguments({"--focus", "A", "--output", "a.png"}), folder.path());
-  EXPECT_NE(outcome.statusLine.find("; materials: auto, "), std::string::npos)
-      << outcome.statusLine;
+  EXPECT_EQ(renderChannels({"--focus", "A", "--context-saturation", "1"}),
+            renderChannels({"--focus", "A", "--context-saturation", "1", "--materials", "none"}));
+  const Outcome outcome =
+      run(makeArguments({"--focus", "A", "--output", "a.png", "-v"}), folder.path());
+  EXPECT_NE(outcome.err.find("\nmaterials: auto, "), std::string::npos) << outcome.err;
 }
 
 TEST_F(MaterialsCommand, FilesAndChangesOverrideTheLibrary) {
@@ -161,11 +160,11 @@ TEST_F(MaterialsCommand, ContextOfAFileAppliesAroundAFocus) {
   folder.write("given.json", R"({"version": 1, )" + context);
   folder.write("contrast.json", R"({"version": 1, "contrast": true, )" + context);
   const auto renderContrast = [&](const std::string& materials) {
-    Arguments arguments = makeArguments(
-        {"--focus", "A", "--materials", materials, "--stats", "s.json", "--output", "a.png"});
+    Arguments arguments = makeArguments({"--focus", "A", "--materials", materials, "--stats-json",
+                                         "s.json", "--output", "a.png", "--verbose"});
     const Outcome outcome = run(arguments, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.statusLine.find("; contrast: "), std::string::npos) << outcome.statusLine;
+    EXPECT_NE(outcome.err.find("\ncontrast of "), std::string::npos) << outcome.err;
     return nlohmann::json::parse(readBytes(folder / "s.json")).at("contrast");
   };
   for (const char* file : {"given.json", "contrast.json"}) {
@@ -186,7 +185,7 @@ TEST_F(MaterialsCommand, DensityAndClippingCanBeSetPerSegment) {
                R"({"version": 1, "segments":
                    [{"match": {"names": ["bone*"]}, "material": "bone", "density": 8}]})");
   const auto sumAlpha = [&](Arguments more) {
-    more.insert(more.end(), {"--background", "transparent", "--density", "0.05"});
+    more.insert(more.end(), {"--background", "transparent", "--density-scale", "0.05"});
     const Image image = renderImage(makeArguments(more), folder.path());
     const Plane& alpha = image.channels.at("A");
     return std::accumulate(alpha.begin(), alpha.end(), 0.0F);
@@ -224,9 +223,9 @@ TEST_F(MaterialsCommand, ErrorsAreOneLine) {
            2,
            "--materials: requires --segmentation FILE"},
           {"smoothing",
-           {"volume.nrrd", "--labelsmoothing", "1"},
+           {"volume.nrrd", "--label-smoothing", "1"},
            2,
-           "--labelsmoothing: requires a focus or materials; add --focus or --materials"},
+           "--label-smoothing: requires a focus or materials; add --focus or --materials"},
           refusal({"--materials", "none"}, 2, "--segmentation: used only with"),
           refusal({"--material", "A: g=0"}, 2, "--material: requires --materials"),
           refusal({"--materials", "liver"}, 3, "liver: | none, auto, library"),

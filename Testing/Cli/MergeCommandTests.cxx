@@ -65,7 +65,7 @@ TEST_F(MergeCommand, ShardsInAnyOrderGiveTheImageOfASingleRun) {
     std::ranges::shuffle(shards, random);
     const Outcome merged =
         merge(shards, {"--denoise", "on", "--output", "merged.exr", "--output", "merged.png",
-                       "--surface", "merged.ply", "--stats", "merged.json"});
+                       "--surface", "merged.ply", "--stats-json", "merged.json"});
     ASSERT_EQ(merged.status, 0) << merged.err;
     expectSameImage(folder / "once.exr", folder / "merged.exr");
     expectSameImage(folder / "once.png", folder / "merged.png");
@@ -84,7 +84,7 @@ TEST_F(MergeCommand, StoppedShardResumes) {
   process.send(SIGTERM);
   const Outcome stopped = process.wait();
   EXPECT_EQ(stopped.status, 5) << stopped.err;
-  EXPECT_NE(stopped.out.find("2of2.film: shard 2/2 of 64x64 pixels"), std::string::npos);
+  EXPECT_NE(stopped.result.find("2of2.film: shard 2/2 of 64x64 pixels"), std::string::npos);
   Arguments first = arguments;
   first[6] = "1/2";       // of --shard
   first[8] = "1of2.film"; // of --checkpoint
@@ -169,7 +169,8 @@ TEST_F(MergeCommand, ShardsRejectOptionsOfTheCompleteImage) {
        refusal("noise", withCheckpoint({"--noise", "0.1"}), "--noise: | --samples"),
        refusal("seconds", withCheckpoint({"--seconds", "1"}), "--seconds: | --samples"),
        refusal("output", withCheckpoint({"--output", "a.png"}), "--output: | fenestra merge"),
-       refusal("stats", withCheckpoint({"--stats", "a.json"}), "--stats: | fenestra merge")},
+       refusal("stats", withCheckpoint({"--stats-json", "a.json"}),
+               "--stats-json: | fenestra merge")},
       folder.path());
   for (const char* text : {"0/3", "4/3", "1", "1/0", "1/2x", "-1/2", "1/20000"})
     expectErrors({{text,

@@ -46,7 +46,8 @@ Image readResult() {
 }
 
 TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
-  const auto lines = renderEcho(addSegments({"--preset", "knee-cartilage", "--stats", "s.json"}));
+  const auto lines =
+      renderEcho(addSegments({"--preset", "knee-cartilage", "--stats-json", "s.json"}));
   for (const char* line : {"preset: knee-cartilage", "focus: FemoralCartilage",
                            "focus: TibialCartilage", "transfer: mr-knee", "clip: surface"})
     EXPECT_TRUE(lines.contains(line)) << line;
@@ -58,8 +59,8 @@ TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
 
   Arguments written = {"--focus", "FemoralCartilage,TibialCartilage"};
   for (const std::string& line : lines)
-    for (const char* option :
-         {"materials", "transfer", "lights", "view", "clip", "boundary", "labelsmoothing", "soft"})
+    for (const char* option : {"materials", "transfer", "lights", "view", "clip", "clip-boundary",
+                               "label-smoothing", "clip-softness"})
       if (line.starts_with(std::string(option) + ": "))
         written.insert(written.end(),
                        {std::string("--") + option, line.substr(std::string(option).size() + 2)});
@@ -76,25 +77,25 @@ TEST(PresetsCommand, OptionsOverrideThePreset) {
   for (const char* line : {"view: superior", "clip: cutaway", "transfer: ct-bone", "focus: Femur",
                            "scale: 70", "lights: studio", "preset: knee-cartilage"})
     EXPECT_TRUE(lines.contains(line)) << line;
-  EXPECT_FALSE(hasLine(lines, "boundary"));
+  EXPECT_FALSE(hasLine(lines, "clip-boundary"));
   EXPECT_TRUE(
-      hasLine(lines, "labelsmoothing")); // still the preset's, since every clip mode uses it
+      hasLine(lines, "label-smoothing")); // still the preset's, since every clip mode uses it
   EXPECT_FALSE(lines.contains("focus: FemoralCartilage"));
-  // An option that conflicts with the preset's --boundary also overrides it.
+  // An option that conflicts with the preset's --clip-boundary also overrides it.
   const auto others = renderEcho(addSegments(
-      {"--preset", "knee-cartilage", "--controlpoints", "20", "--position", "0,300,0"}));
+      {"--preset", "knee-cartilage", "--control-points", "20", "--position", "0,300,0"}));
   EXPECT_TRUE(others.contains("clip: surface"));
-  EXPECT_FALSE(hasLine(others, "boundary"));
+  EXPECT_FALSE(hasLine(others, "clip-boundary"));
   EXPECT_FALSE(hasLine(others, "view"));
 }
 
 /// Slicer's panel passes all options, most with their default values.
 TEST(PresetsCommand, DefaultValuesFromSlicerDoNotOverrideThePreset) {
-  const auto lines = renderEcho(
-      addSegments({"--preset", "knee-cartilage", "--clip", "auto", "--boundary", "spline",
-                   "--controlpoints", "50", "--lights", "soft", "--returnparameterfile", "r.txt"}));
+  const auto lines = renderEcho(addSegments(
+      {"--preset", "knee-cartilage", "--clip", "auto", "--clip-boundary", "spline",
+       "--control-points", "50", "--lights", "soft", "--returnparameterfile", "r.txt"}));
   EXPECT_TRUE(lines.contains("clip: surface"));
-  EXPECT_TRUE(lines.contains("boundary: exact"));
+  EXPECT_TRUE(lines.contains("clip-boundary: exact"));
   EXPECT_TRUE(lines.contains("lights: soft"));
 }
 

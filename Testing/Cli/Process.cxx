@@ -27,6 +27,24 @@ std::string readContent(int file) {
   return {std::istreambuf_iterator<char>(stream.rdbuf()), {}};
 }
 
+/// Moves the last line that is no error and no warning to `result`. A bar may precede it.
+void splitResult(Outcome& outcome) {
+  constexpr std::string_view eraser = "\033[K";
+  std::string& text = outcome.err = outcome.messages;
+  for (std::size_t end = text.rfind('\n'); end != text.npos && end > 0;) {
+    const std::size_t before = text.rfind('\n', end - 1);
+    std::size_t begin = before == text.npos ? 0 : before + 1;
+    const std::size_t bar = text.substr(begin, end - begin).rfind(eraser);
+    begin += bar == text.npos ? 0 : bar + eraser.size();
+    if (text.compare(begin, 8, "fenestra") != 0) {
+      outcome.result = text.substr(begin, end + 1 - begin);
+      text.erase(begin, end + 1 - begin);
+      return;
+    }
+    end = before;
+  }
+}
+
 [[noreturn]] void execProgram(const Arguments& arguments, const std::filesystem::path& folder,
                               int in, int out, int err) {
   std::vector<char*> words = {const_cast<char*>(FENESTRA_EXECUTABLE)};
@@ -86,6 +104,10 @@ std::string Process::output() const {
   return readContent(m_out);
 }
 
+std::string Process::messages() const {
+  return readContent(m_err);
+}
+
 void Process::send(int signal) const {
   if (isRunning())
     ::kill(m_id, signal);
@@ -132,6 +154,11 @@ double Process::cpuSeconds() const {
   return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
+bool Process::waitForMessage(const std::string& expression) const {
+  const std::regex pattern(expression);
+  return waitUntil([&] { return std::regex_search(messages(), pattern); }, getTimeLimit());
+}
+
 Outcome Process::wait() {
   const double before = cpuSeconds();
   waitUntil([] { return false; });
@@ -144,14 +171,8 @@ Outcome Process::wait() {
   if (WIFEXITED(m_waitStatus))
     outcome.status = WEXITSTATUS(m_waitStatus);
   outcome.out = readContent(m_out);
-  outcome.err = readContent(m_err);
-  const std::size_t begin =
-      outcome.err.starts_with("look: ") ? 0 : outcome.err.find("\nlook: ") + 1;
-  if (outcome.err.compare(begin, 6, "look: ") == 0) {
-    const std::size_t end = outcome.err.find('\n', begin);
-    outcome.statusLine = outcome.err.substr(begin, end - begin);
-    outcome.err.erase(begin, end - begin + 1);
-  }
+  outcome.messages = readContent(m_err);
+  splitResult(outcome);
   return outcome;
 }
 

@@ -12,9 +12,10 @@ using Arguments = std::vector<std::string>;
 
 struct Outcome {
   int status = -1; ///< exit status; -1 if a signal ended the process
-  std::string out, err;
-  std::string
-      statusLine; ///< status line about appearance, lights and labels, moved here from `err`
+  std::string out;
+  std::string err;      ///< standard error without the result line
+  std::string result;   ///< line that states what a command that succeeded has written; empty: none
+  std::string messages; ///< all of standard error
   double cpuSeconds = 0.0; ///< processor time of the process during wait(), of all threads
 };
 
@@ -44,7 +45,10 @@ public:
   bool waitUntilOpen(const std::filesystem::path& file) const;
   /// Waits until standard output matches a regular expression.
   bool waitForOutput(const std::string& expression) const;
-  std::string output() const; ///< standard output so far
+  /// Same, of standard error.
+  bool waitForMessage(const std::string& expression) const;
+  std::string output() const;   ///< standard output so far
+  std::string messages() const; ///< standard error so far
   /// Processor time of the process so far in seconds, of all threads; 0 if it has ended.
   double cpuSeconds() const;
   /// Waits until the process ends; kills it after `hangLimit`.

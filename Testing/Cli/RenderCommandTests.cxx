@@ -33,8 +33,9 @@ TEST_F(RenderCommand, DefaultOutputIsTheInputNameInTheCurrentFolder) {
       run({"render", "data/volume.nrrd", "--size", "16x8", "--samples", "1"}, folder.path());
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  EXPECT_TRUE(outcome.out.starts_with("volume.png: 16x8 pixels, 1 sample per pixel"))
-      << outcome.out;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_TRUE(outcome.result.starts_with("volume.png: 16x8 pixels, 1 sample per pixel"))
+      << outcome.result;
   const Image image = readImage(folder / "volume.png");
   EXPECT_EQ(image.width, 16);
   EXPECT_EQ(image.height, 8);
@@ -42,15 +43,20 @@ TEST_F(RenderCommand, DefaultOutputIsTheInputNameInTheCurrentFolder) {
             (std::set<std::string>{"data", "data/volume.nrrd", "segments.seg.nrrd", "volume.png"}));
 }
 
-TEST_F(RenderCommand, StatusLineNamesAppearanceAndLights) {
-  EXPECT_EQ(renderVolume({"--output", "a.png"}).statusLine,
-            "look: by the volume's range; lights: cinema");
-  EXPECT_EQ(renderVolume({"--output", "a.png", "--environment", "1"}).statusLine,
-            "look: by the volume's range; lights: environment");
-  EXPECT_EQ(renderVolume({"--output", "a.png", "--progress", "none"}).statusLine, "");
-  const Outcome ct = renderVolume({"--output", "a.png", "--transfer", "ct-bone"});
-  EXPECT_EQ(ct.statusLine, "look: ct-bone; lights: cinema");
-  EXPECT_TRUE(ct.err.starts_with("fenestra: warning: ct-bone: ")) << ct.err;
+TEST_F(RenderCommand, StatsNameTheTransferFunction) {
+  const auto findTransfer = [&](const Arguments& options) {
+    Arguments all = {"--output", "a.png", "--stats-json", "s.json"};
+    all.insert(all.end(), options.begin(), options.end());
+    EXPECT_EQ(renderVolume(all).status, 0);
+    return nlohmann::json::parse(readBytes(folder / "s.json")).at("transferFunction");
+  };
+  EXPECT_EQ(findTransfer({}), "by the volume's range");
+  EXPECT_EQ(findTransfer({"--transfer", "ct-bone"}), "ct-bone");
+}
+
+TEST_F(RenderCommand, WarnsOfATransferFunctionOfAnotherModality) {
+  EXPECT_NE(renderVolume({"--output", "a.png", "--transfer", "ct-bone"}).err.find("ct-bone"),
+            std::string::npos);
 }
 
 TEST_F(RenderCommand, DefaultBackgroundIsAGradient) {
@@ -76,9 +82,9 @@ TEST_F(RenderCommand, OneNumberIsAGray) {
 
 TEST_F(RenderCommand, ExposureAndToneChangeOnlyDisplayImages) {
   const auto renderChannels = [&](const Arguments& more, const std::string& name) {
-    Arguments arguments = {"--denoise", "on",           "--output", name + ".exr",
-                           "--output",  name + ".nrrd", "--output", name + ".png",
-                           "--output",  name + ".tif",  "--stats",  name + ".json"};
+    Arguments arguments = {"--denoise", "on",           "--output",     name + ".exr",
+                           "--output",  name + ".nrrd", "--output",     name + ".png",
+                           "--output",  name + ".tif",  "--stats-json", name + ".json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_EQ(renderVolume(arguments).status, 0);
     return readImage(folder / (name + ".exr")).channels;
@@ -166,8 +172,8 @@ TEST_F(RenderCommand, StatsCountOnlyRequiredFilesAndRays) {
   folder.write("haze.json",
                R"({"extinction": [[0, 0], [63, 0.5]], "albedo": [[0, 0.8, 0.8, 0.8]]})");
   const auto renderStats = [&](const Arguments& more) {
-    Arguments arguments = {"--transfer", "haze.json", "--layers", "color",
-                           "--output",   "s.exr",     "--stats",  "s.json"};
+    Arguments arguments = {"--transfer", "haze.json", "--layers",     "color",
+                           "--output",   "s.exr",     "--stats-json", "s.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_EQ(renderVolume(arguments).status, 0);
     return readStats("s.json");
@@ -190,7 +196,7 @@ TEST_F(RenderCommand, StatsCountOnlyRequiredFilesAndRays) {
   EXPECT_LE(lit["gradients"], lit["collisions"]);
 
   const nlohmann::json focused = renderStats({"--segmentation", "segments.seg.nrrd", "--focus", "A",
-                                              "--clip", "cutaway", "--labelsmoothing", "0"});
+                                              "--clip", "cutaway", "--label-smoothing", "0"});
   EXPECT_EQ(focused["focusVoxels"], 27) << "one voxel and its neighbors";
   EXPECT_EQ(focused["filesRead"],
             (nlohmann::json{"haze.json", "segments.seg.nrrd", "volume.nrrd"}));
@@ -205,7 +211,7 @@ TEST_F(RenderCommand, LightsAsFileOrInlineJsonGiveTheSameImage) {
      "up": [0, 1, 0], "size": [1.4, 1.4], "radiance": [15, 10, 5]}]})";
   folder.write("lights.json", text);
   const Image file = render({"--lights", "lights.json"});
-  EXPECT_EQ(file.channels, render({"--lights", text, "--stats", "s.json"}).channels);
+  EXPECT_EQ(file.channels, render({"--lights", text, "--stats-json", "s.json"}).channels);
   EXPECT_EQ(readStats("s.json")["filesRead"], nlohmann::json::array({"volume.nrrd"}));
   EXPECT_NE(file.channels, render({}).channels);
   const std::string longerThanPaths = text + std::string(5000, ' ');
@@ -213,9 +219,9 @@ TEST_F(RenderCommand, LightsAsFileOrInlineJsonGiveTheSameImage) {
 }
 
 TEST_F(RenderCommand, SamplingIsSelectedAndReported) {
-  const Image stratified = render({"--stats", "s.json"});
+  const Image stratified = render({"--stats-json", "s.json"});
   EXPECT_EQ(readStats("s.json")["sampling"], "stratified");
-  const Image plain = render({"--sampling", "independent", "--stats", "s.json"});
+  const Image plain = render({"--sampling", "independent", "--stats-json", "s.json"});
   EXPECT_EQ(readStats("s.json")["sampling"], "independent");
   EXPECT_EQ(plain.header.at("sampling"), "independent");
   EXPECT_NE(stratified.channels.at("R"), plain.channels.at("R"));
@@ -234,18 +240,19 @@ TEST_F(RenderCommand, ImageDependsOnTheSeedButNotOnTheThreads) {
 }
 
 TEST_F(RenderCommand, StopsAtTimeLimitAndAtNoiseTarget) {
-  Outcome outcome = run({"volume.nrrd", "--size", "32x32", "--seconds", "0.3", "--stats", "s.json"},
-                        folder.path());
+  Outcome outcome =
+      run({"volume.nrrd", "--size", "32x32", "--seconds", "0.3", "--stats-json", "s.json"},
+          folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const double seconds = readStats("s.json")["seconds"]["transport"];
   EXPECT_GT(seconds, 0.1);
   EXPECT_LT(seconds, 2.0);
-  outcome =
-      run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--stats", "n.json"}, folder.path());
+  outcome = run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--stats-json", "n.json"},
+                folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_LE(readStats("n.json")["noiseDenoised"], 0.1); // of the display image
-  outcome = run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--noisetarget", "raw",
-                 "--stats", "r.json"},
+  outcome = run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--noise-target", "raw",
+                 "--stats-json", "r.json"},
                 folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_LE(readStats("r.json")["noise"], 0.1);
@@ -253,11 +260,12 @@ TEST_F(RenderCommand, StopsAtTimeLimitAndAtNoiseTarget) {
 }
 
 TEST_F(RenderCommand, StatsHaveEveryDocumentedKey) {
-  const Outcome outcome = run(
-      {"knee/knee.nrrd", "--segmentation", "knee/knee.seg.nrrd", "--focus", "FemoralCartilage",
-       "--transfer", "knee/knee.vp.json", "--labelsmoothing", "0", "--size", "32x32", "--samples",
-       "4", "--output", (folder / "knee.png").string(), "--stats", (folder / "knee.json").string()},
-      kneeFolder().path());
+  const Outcome outcome =
+      run({"knee/knee.nrrd", "--segmentation", "knee/knee.seg.nrrd", "--focus", "FemoralCartilage",
+           "--transfer", "knee/knee.vp.json", "--label-smoothing", "0", "--size", "32x32",
+           "--samples", "4", "--output", (folder / "knee.png").string(), "--stats-json",
+           (folder / "knee.json").string()},
+          kneeFolder().path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json json = readStats("knee.json");
   double stages = 0.0;
@@ -290,9 +298,9 @@ TEST_F(RenderCommand, StatsHaveEveryDocumentedKey) {
 }
 
 TEST_F(RenderCommand, NegativeNumbersAreValuesNotOptions) {
-  const Image joined = render({"--position=-1,20,3", "--shift=-5"});
-  const Image separate = render({"--position", "-1,20,3", "--shift", "-5"});
-  const Image bare = render({"--position", "-1.0,20,3.", "--shift", "-.5e1"});
+  const Image joined = render({"--position=-1,20,3", "--transfer-shift=-5"});
+  const Image separate = render({"--position", "-1,20,3", "--transfer-shift", "-5"});
+  const Image bare = render({"--position", "-1.0,20,3.", "--transfer-shift", "-.5e1"});
   EXPECT_EQ(joined.channels, separate.channels);
   EXPECT_EQ(joined.channels, bare.channels);
   EXPECT_NE(joined.header.at("camera").find("--position=-1,20,3 "), std::string::npos)

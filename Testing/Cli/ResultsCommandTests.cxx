@@ -21,13 +21,10 @@ protected:
   }
 };
 
-TEST_F(ResultsCommand, StatsOnStandardOutputFollowTheSummary) {
-  const Outcome outcome = renderVolume({"--output", "a.png", "--stats", "/dev/stdout"});
+TEST_F(ResultsCommand, StatsAreAllOfStandardOutput) {
+  const Outcome outcome = renderVolume({"--output", "a.png", "--stats-json", "/dev/stdout"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const std::size_t json = outcome.out.find('{');
-  ASSERT_NE(json, std::string::npos) << outcome.out;
-  EXPECT_TRUE(nlohmann::json::parse(outcome.out.substr(json, outcome.out.rfind('}') + 1 - json))
-                  .contains("samplesPerPixel"));
+  EXPECT_TRUE(nlohmann::json::parse(outcome.out).contains("samplesPerPixel"));
   struct stat status = {};
   ASSERT_EQ(::lstat("/dev/stdout", &status), 0);
   EXPECT_TRUE(S_ISLNK(status.st_mode));
@@ -37,8 +34,10 @@ TEST_F(ResultsCommand, SummaryIsOneLineForNamesWithControlCharacters) {
   const std::string name = "a\x1b[31m\nb";
   const auto expectOneLine = [](const Outcome& outcome) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
-    EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos) << outcome.out;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(std::count(outcome.messages.begin(), outcome.messages.end(), '\n'), 1)
+        << outcome.messages;
+    EXPECT_EQ(outcome.messages.find('\x1b'), std::string::npos) << outcome.messages;
   };
   expectOneLine(renderVolume({"--output", name + ".png"}));
   expectOneLine(run({"phantom", "cube", "--size", "16", "--output", name}, folder.path()));
@@ -55,7 +54,9 @@ TEST_F(ResultsCommand, FullStandardOutputIsAnOutputError) {
            {"--version"},
            {"--xml"},
            {"inspect", "volume.nrrd"},
-           {"volume.nrrd", "--size", "8x8", "--samples", "1", "--output", "a.png"}}) {
+           {"help"},
+           {"describe", "man"},
+           {"volume.nrrd", "--size", "8x8", "--samples", "1", "--output", "a.png", "--echo"}}) {
     const Outcome outcome = Process(arguments, folder.path(), Stdout::fullDisk).wait();
     EXPECT_EQ(outcome.status, 4) << arguments.front();
     EXPECT_TRUE(outcome.err.starts_with("fenestra: error: standard output: ")) << outcome.err;
@@ -70,12 +71,13 @@ TEST_F(ResultsCommand, PathsInTheHeaderAreRelativeToTheImage) {
   const std::string patient = (folder / "Doe^John_19501231").string();
   const Outcome outcome =
       run({patient + "/dicom/volume.nrrd", "--size", "8x8", "--samples=1",
-           "--output=" + patient + "/images/a.exr", "--stats", patient + "/images/a.json"},
+           "--output=" + patient + "/images/a.exr", "--stats-json", patient + "/images/a.json"},
           folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::filesystem::path images = folder / "Doe^John_19501231/images";
-  EXPECT_EQ(readImage(images / "a.exr").header.at("command"),
-            "fenestra ../dicom/volume.nrrd --size 8x8 --samples=1 --output=a.exr --stats a.json");
+  EXPECT_EQ(
+      readImage(images / "a.exr").header.at("command"),
+      "fenestra ../dicom/volume.nrrd --size 8x8 --samples=1 --output=a.exr --stats-json a.json");
   EXPECT_EQ(nlohmann::json::parse(readBytes(images / "a.json"))["filesRead"],
             nlohmann::json::array({"../dicom/volume.nrrd"}));
   for (const char* file : {"a.exr", "a.json"})
@@ -88,7 +90,7 @@ TEST_F(ResultsCommand, TurntableRendersAnEmptyFrameAgain) {
   std::filesystem::resize_file(folder / "turn_0000.png", 0);
   const Outcome again = runTurntable();
   ASSERT_EQ(again.status, 0) << again.err;
-  EXPECT_NE(again.out.find("1 rendered now"), std::string::npos) << again.out;
+  EXPECT_NE(again.result.find("1 rendered now"), std::string::npos) << again.result;
   EXPECT_EQ(readBytes(folder / "turn_0000.png"), complete);
 }
 
@@ -176,7 +178,7 @@ TEST_F(ResultsCommand, SecondTurntableOfTheSameFramesIsRejected) {
 TEST_F(ResultsCommand, WarnsOfADepthFileOfAnEarlierImage) {
   ASSERT_EQ(renderVolume({"--output", "a.nrrd"}).err, "");
   const Outcome colorOnly =
-      renderVolume({"--output", "a.nrrd", "--layers", "color", "--stats", "s"});
+      renderVolume({"--output", "a.nrrd", "--layers", "color", "--stats-json", "s"});
   EXPECT_EQ(colorOnly.status, 0);
   const std::string warning = "a-Z.nrrd: belongs to an earlier image than a.nrrd; remove it";
   EXPECT_EQ(colorOnly.err, "fenestra: warning: " + warning + "\n");

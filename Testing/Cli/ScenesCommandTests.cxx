@@ -261,10 +261,10 @@ TEST_F(ScenesCommand, StoredOptionsReproduceTheImage) {
     return readImage(folder / "a.exr").channels;
   };
   const Arguments appearance = {
-      "--size",    "16x16",
-      "--seed",    "9",
-      "--density", "2",
-      "--lights",  R"({"lights": [{"type": "environment", "radiance": [1, 2, 1]}]})"};
+      "--size",          "16x16",
+      "--seed",          "9",
+      "--density-scale", "2",
+      "--lights",        R"({"lights": [{"type": "environment", "radiance": [1, 2, 1]}]})"};
   const auto with = [&](Arguments options) {
     options.insert(options.end(), appearance.begin(), appearance.end());
     return options;
@@ -288,7 +288,7 @@ TEST_F(ScenesCommand, StoredOptionsReproduceTheImage) {
   EXPECT_FALSE(std::filesystem::exists(folder / "elsewhere.png"));
 
   const Outcome inspected = run({"inspect", "stored.mrml"}, folder.path());
-  EXPECT_NE(inspected.out.find("as rendered   --clip=cutaway --density=2 --focus=A"),
+  EXPECT_NE(inspected.out.find("as rendered   --clip=cutaway --density-scale=2 --focus=A"),
             std::string::npos)
       << inspected.out;
 }

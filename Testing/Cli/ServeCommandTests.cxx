@@ -61,11 +61,11 @@ TEST_F(ServeCommand, ImagesEqualThoseOfRender) {
   const std::vector<std::pair<std::string, Arguments>> changes = {
       {R"({"id": 1, "view": "left"})", {"--view", "left"}},
       {R"({"id": 2, "seed": 3, "density": 2.5})",
-       {"--view", "left", "--seed", "3", "--density", "2.5"}},
+       {"--view", "left", "--seed", "3", "--density-scale", "2.5"}},
       {R"({"id": 3, "view": "auto", "seed": null, "segmentation": "segments.seg.nrrd",
            "focus": ["Bone, left"]})",
-       {"--view", "auto", "--density", "2.5", "--segmentation", "segments.seg.nrrd", "--focus",
-        "Bone\\, left"}},
+       {"--view", "auto", "--density-scale", "2.5", "--segmentation", "segments.seg.nrrd",
+        "--focus", "Bone\\, left"}},
       {R"({"id": 4, "view": null, "clip": "none", "density": "", "size": "8x8"})",
        {"--segmentation", "segments.seg.nrrd", "--focus", "A", "--clip", "none", "--size", "8x8"}},
       {R"({"id": 5, "size": "16x16", "environment": [1, 0.5, 0]})",
@@ -173,7 +173,7 @@ TEST_F(ServeCommand, ChangesBeforeAndAfterARejectedOneApply) {
                   std::to_string(i + 2) + "}\n");
     ASSERT_TRUE(waitForError(process, "\"rejected\"", "")) << rejected[i] << process.output();
     ASSERT_TRUE(waitForImage(process, "\"" + after + "\"")) << rejected[i] << process.output();
-    expectImage({"--seed", std::to_string(i + 1), "--density", std::to_string(i + 2)});
+    expectImage({"--seed", std::to_string(i + 1), "--density-scale", std::to_string(i + 2)});
   }
   std::size_t errors = 0;
   for (const json& event : readEvents(process)) {
@@ -251,7 +251,7 @@ TEST_F(ServeCommand, ClosedOutputEndsWithStatus4) {
 TEST_F(ServeCommand, MissingInputStatsAndSurfaceOptionsAreRejected) {
   expectErrors({{"no input", {"serve"}, 2, "INPUT:"},
                 {"missing", {"serve", "missing.nrrd"}, 3, "missing.nrrd:"},
-                {"stats", {"serve", "volume.nrrd", "--stats", "a.json"}, 2, "--stats:"},
+                {"stats", {"serve", "volume.nrrd", "--stats-json", "a.json"}, 2, "--stats-json:"},
                 {"surface", {"serve", "volume.nrrd", "--surface", "a.vtp"}, 2, "--surface:"}},
                folder.path());
 }

@@ -26,7 +26,7 @@ INSTANTIATE_TEST_SUITE_P(All, SignalsCommand, ::testing::Values(SIGINT, SIGTERM,
 
 TEST_P(SignalsCommand, FirstSignalWritesFinishedPasses) {
   Process process({"volume.nrrd", "--size", "64x64", "--samples", "20000", "--threads", "2",
-                   "--progress", "xml", "--output", "a.exr", "--output", "a.png", "--stats",
+                   "--progress", "xml", "--output", "a.exr", "--output", "a.png", "--stats-json",
                    "a.json"},
                   folder.path());
   ASSERT_TRUE(process.waitForOutput("<filter-progress>0\\.0*[1-9]"));
@@ -35,7 +35,7 @@ TEST_P(SignalsCommand, FirstSignalWritesFinishedPasses) {
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_LT(outcome.cpuSeconds, cpuLimit);
-  EXPECT_NE(outcome.out.find("stopped on request"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.result.find("stopped on request"), std::string::npos) << outcome.messages;
   const Image image = readImage(folder / "a.exr");
   const auto samples = std::stoull(image.header.at("samples"));
   EXPECT_GE(samples, 1u);
@@ -98,8 +98,8 @@ TEST_P(SignalsCommand, SignalRemovesUnpackedFilesOfAnArchive) {
 
 TEST_P(SignalsCommand, SignalBeforeTheFirstPassWritesNothing) {
   const auto before = listFiles(kneeFolder().path());
-  Process process({"knee/knee.nrrd", "--size", "1024x1024", "--samples", "1000000", "--density",
-                   "1000", "--threads", "2", "--progress", "xml"},
+  Process process({"knee/knee.nrrd", "--size", "1024x1024", "--samples", "1000000",
+                   "--density-scale", "1000", "--threads", "2", "--progress", "xml"},
                   kneeFolder().path()); // its first pass takes minutes
   ASSERT_TRUE(process.waitForOutput("<filter-start>"));
   process.send(GetParam());
@@ -138,6 +138,29 @@ TEST_P(SignalsCommand, SignalRemovesFilesOfAnUnfinishedPhantom) {
 }
 
 class BrokenPipe : public SmallScene {};
+
+/// Text that was asked for: whoever closes the pipe, such as `head`, has seen enough.
+TEST_F(BrokenPipe, EndsTextQuietlyWithStatus0) {
+  ASSERT_EQ(renderVolume({"--output", "a.exr"}).status, 0);
+  for (const auto handler : {SIG_DFL, SIG_IGN}) {
+    std::signal(SIGPIPE, handler); // ignored by some shells and by Python
+    for (const Arguments& arguments : {Arguments{"inspect", "volume.nrrd"},
+                                       {"inspect", "volume.nrrd", "--json"},
+                                       {"compare", "a.exr", "a.exr"},
+                                       {"describe", "man"},
+                                       {"--help"},
+                                       {"help", "all"},
+                                       {"turntable", "--help"},
+                                       {"--version"},
+                                       {"--xml"}}) {
+      Process process(arguments, folder.path(), Stdout::closedPipe);
+      std::signal(SIGPIPE, SIG_DFL);
+      const Outcome outcome = process.wait();
+      EXPECT_EQ(outcome.status, 0) << arguments.front() << outcome.messages;
+      EXPECT_EQ(outcome.messages, "") << arguments.front();
+    }
+  }
+}
 
 TEST_F(BrokenPipe, EndsTheRenderWithStatus4) {
   folder.write("a.png", "old");

@@ -66,14 +66,14 @@ protected:
 TEST_F(TurntableCommand, FramesEqualThoseOfRender) {
   const Outcome outcome =
       runTurntable({"--output", "turn.exr", "--output", "turn.png", "--output", "turn.nrrd",
-                    "--boundary", "exact", "--steady", "0", "--stats", "all.json"});
+                    "--clip-boundary", "exact", "--steady", "0", "--stats-json", "all.json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(outcome.out.starts_with("turn_0000.exr to turn_0003.exr: 4 of 4 frames"))
-      << outcome.out;
+  EXPECT_TRUE(outcome.result.starts_with("turn_0000.exr to turn_0003.exr: 4 of 4 frames"))
+      << outcome.result;
   for (int i = 0; i < 4; ++i) {
     for (const char* ending : {".png", ".nrrd", "-Z.nrrd"})
       EXPECT_TRUE(std::filesystem::exists(folder / ("turn_000" + std::to_string(i) + ending)));
-    Arguments arguments = {"--output", "single.exr", "--boundary", "exact"};
+    Arguments arguments = {"--output", "single.exr", "--clip-boundary", "exact"};
     for (const Arguments& more : {focus, readCamera(makeFrameName(i))})
       arguments.insert(arguments.end(), more.begin(), more.end());
     ASSERT_EQ(renderVolume(arguments).status, 0);
@@ -110,7 +110,8 @@ TEST_F(TurntableCommand, RendersOnlyMissingFrames) {
   std::filesystem::remove(folder / makeFrameName(2));
   const Outcome outcome = runTurntable({"--output", "turn.exr", "--threads", "1"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("4 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.result.find("4 of 4 frames, 1 rendered now"), std::string::npos)
+      << outcome.result;
   for (const auto& [index, when] : written)
     EXPECT_EQ(std::filesystem::last_write_time(folder / makeFrameName(index)), when) << index;
   EXPECT_EQ(readImage(folder / makeFrameName(2)).channels, removed.channels);
@@ -122,7 +123,7 @@ TEST_F(TurntableCommand, ResumesAfterFramesWithoutDepth) {
   const Arguments options = {"--output", "turn.nrrd", "--layers", "color"};
   ASSERT_EQ(runTurntable(options).status, 0);
   const Outcome again = runTurntable(options);
-  EXPECT_NE(again.out.find("4 of 4 frames, 0 rendered now"), std::string::npos) << again.out;
+  EXPECT_NE(again.result.find("4 of 4 frames, 0 rendered now"), std::string::npos) << again.result;
 }
 
 TEST_F(TurntableCommand, ResumesAfterAnInterruptionWithIdenticalFrames) {
@@ -136,8 +137,9 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionWithIdenticalFrames) {
     process.send(SIGINT);
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.status, 5) << outcome.err;
-    EXPECT_NE(outcome.out.find("(stopped on request; the same command resumes)"), std::string::npos)
-        << outcome.out;
+    EXPECT_NE(outcome.result.find("(stopped on request; the same command resumes)"),
+              std::string::npos)
+        << outcome.result;
   }
   const auto finished = readManifest()["finished"].size();
   ASSERT_GE(finished, 1U);
@@ -149,7 +151,7 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionWithIdenticalFrames) {
 
   const Outcome rest = run(arguments, folder.path());
   ASSERT_EQ(rest.status, 0) << rest.err;
-  EXPECT_NE(rest.out.find(std::to_string(4 - finished) + " rendered now"), std::string::npos);
+  EXPECT_NE(rest.result.find(std::to_string(4 - finished) + " rendered now"), std::string::npos);
   for (const auto& [i, bytes] : before)
     EXPECT_EQ(readBytes(folder / makeFrameName(i)), bytes) << i;
   const nlohmann::json resumed = readManifest();
@@ -183,7 +185,7 @@ TEST_F(TurntableCommand, RejectsFramesOfAnotherTurntable) {
       folder.path());
   const Outcome again = runTurntable({"--output", "turn.exr", "--seed", "3", "--restart"});
   ASSERT_EQ(again.status, 0) << again.err;
-  EXPECT_NE(again.out.find("4 rendered now"), std::string::npos) << again.out;
+  EXPECT_NE(again.result.find("4 rendered now"), std::string::npos) << again.result;
   EXPECT_EQ(readImage(folder / makeFrameName(1)).header.at("seed"), "3");
 
   folder.write("segments.seg.nrrd", makeSegments() + " ");
@@ -250,8 +252,8 @@ TEST_F(TurntableCommand, ReadsAManifestOfTenThousandFrames) {
 
 TEST_F(TurntableCommand, StopsDuringTheComputationOfASurface) {
   Arguments arguments =
-      makeArguments({"--output", "turn.exr", "--samples", "1", "--boundary", "exact", "--degrees",
-                     "90", "--stats", "all.json", "--progress", "xml"});
+      makeArguments({"--output", "turn.exr", "--samples", "1", "--clip-boundary", "exact",
+                     "--degrees", "90", "--stats-json", "all.json", "--progress", "xml"});
   *std::find(arguments.begin(), arguments.end(), "16x16") = "1024x1024"; // five surfaces per frame
   Process process(arguments, folder.path());
   ASSERT_TRUE(process.waitForOutput("frame 2 of 4"));
@@ -260,7 +262,8 @@ TEST_F(TurntableCommand, StopsDuringTheComputationOfASurface) {
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_LT(outcome.cpuSeconds, frame / 4.0);
-  EXPECT_NE(outcome.out.find("1 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.result.find("1 of 4 frames, 1 rendered now"), std::string::npos)
+      << outcome.messages;
   EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "all.json"))["finished"], 1);
   EXPECT_EQ(listFiles(folder.path()).size(), 2U + 3) << "inputs, one frame, two .json";
 }
@@ -360,7 +363,7 @@ TEST_F(TurntableCommand, ShardsRenderTheirFramesIntoOneFolder) {
     expectSameImage(folder / ("complete_" + std::string(frame) + ".exr"),
                     folder / ("part_" + std::string(frame) + ".exr"));
   const Outcome again = render("part.exr", {"--shard", "2/3"});
-  EXPECT_NE(again.out.find("2 of 2 frames, 0 rendered now"), std::string::npos) << again.out;
+  EXPECT_NE(again.result.find("2 of 2 frames, 0 rendered now"), std::string::npos) << again.result;
   EXPECT_EQ(render("few.exr", {"--shard", "1/6"}).status, 2);
 }
 

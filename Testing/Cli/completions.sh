@@ -16,9 +16,12 @@ mkdir folder
 (cd folder && touch scan.nrrd labels.nrrd look.json)
 
 # Line as typed|completion of its last word; empty: no completion.
-cases='fenestra --cl|--clip
+cases='fenestra --proj|--projection
 fenestra --clip su|surface
 fenestra --clip=su|surface
+fenestra --quality dr|draft
+fenestra -s lab|labels.nrrd
+fenestra -o loo|look.json
 fenestra tur|turntable
 fenestra turntable --fra|--frames
 fenestra inspect --fra|
@@ -26,8 +29,8 @@ fenestra serve --checkp|
 fenestra turntable --surf|
 fenestra --checkp|--checkpoint
 fenestra inspect --js|--json
-fenestra serve scan.nrrd --noiset|--noisetarget
-fenestra serve scan.nrrd --noisetarget de|denoised
+fenestra serve scan.nrrd --noise-t|--noise-target
+fenestra serve scan.nrrd --noise-target de|denoised
 fenestra phantom kn|knee
 fenestra phantom cube --ed|--edge
 fenestra describe zs|zsh
@@ -35,7 +38,7 @@ fenestra scan.nrrd --transfer ct-li|ct-liver
 fenestra --preset brain-t|brain-tumor
 fenestra --lights ci|cinema
 fenestra --layers den|denoised
-fenestra --soft au|auto
+fenestra --clip-softness au|auto
 fenestra --transfer loo|look.json
 fenestra --segmentation lab|labels.nrrd
 fenestra compare scan.nrrd lab|labels.nrrd
@@ -67,7 +70,7 @@ complete_fish() {
   HOME=$work fish --no-config -c 'cd folder
     source ../described
     while read -l line
-        complete -C $line | cut -f 1 | string replace -r "^--[a-z]+=" ""
+        complete -C $line | cut -f 1 | string replace -r "^--[a-z-]+=" ""
         echo /
     end'
 }
@@ -96,7 +99,7 @@ Z
 
 # The printed script or page must contain every option of every command's help.
 for command in render inspect turntable serve compare phantom describe; do
-  "$program" "$command" --help | sed -n 's/^  --\([a-z]*\).*/\1/p'
+  "$program" "$command" --help | sed -nE 's/^  (-[a-z], |    )--([a-z-]*).*/\2/p'
 done | sort -u >options
 [ "$(wc -l <options)" -gt 50 ]
 while read -r option; do
@@ -104,7 +107,7 @@ while read -r option; do
     bash) form=" --$option[ ']|'--$option[ ']" ;;
     zsh) form="--$option(=|\[)" ;;
     fish) form=" -l $option " ;;
-    man) form="^.It Fl Fl $option( |\$)" ;;
+    man) form="^.It (Fl [a-z] , )?Fl Fl $option( |\$)" ;;
   esac
   grep -qE -- "$form" described || echo "--$option is missing"
 done <options >missing
