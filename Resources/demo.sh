@@ -16,24 +16,24 @@ if [ ! -s "$out/knee/knee.nrrd" ] || [ "$fenestra" -nt "$out/knee/knee.nrrd" ]; 
   "$fenestra" phantom knee --output "$out/knee"
 fi
 
-# View from the front and slightly below, onto both lesions of the femoral cartilage. --labelsmoothing removes the
-# steps of the label map's 1 mm slices, --soft those of the scan at the border of the cartilage.
+# View from the front and slightly below, onto both lesions of the femoral cartilage. --label-smoothing removes the
+# steps of the label map's 1 mm slices, --clip-softness those of the scan at the border of the cartilage.
 scene=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
-  --focus "Femoral cartilage" --labelsmoothing 0.6 --position=-15,200,-90 --size 384x384 --samples 16)
+  --focus "Femoral cartilage" --label-smoothing 0.6 --position=-15,200,-90 --size 384x384 --samples 16)
 
 render() { # MODE [options]
   local mode=$1
   shift
   say "Rendering: $mode"
   "$fenestra" "$out/knee/knee.nrrd" "${scene[@]}" --clip "$mode" "$@" \
-    --output "$out/$mode.exr" --output "$out/$mode.png" --stats "$out/$mode.json"
+    --output "$out/$mode.exr" --output "$out/$mode.png" --stats-json "$out/$mode.json"
 }
 start=$SECONDS
-render surface --boundary exact --soft 2
+render surface --clip-boundary exact --clip-softness 2
 say "First image: $out/surface.png"
 render none
 render plane --plane=0,10,-5,0,0.91,-0.41
-render cutaway --soft 2
+render cutaway --clip-softness 2
 say "Rendering took $((SECONDS - start)) s"
 
 montage -font DejaVu-Sans -pointsize 18 -geometry +6+6 -background '#181818' -fill white \

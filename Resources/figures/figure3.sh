@@ -60,14 +60,14 @@ p = 0.5 depends on the unit. So the figure has two versions, with edges of 1 mm 
 END
 for mm in 1 512; do
   make_phantom cube "cube-$mm" --edge "$mm"
-  cube=("$out/cube-$mm/cube.mrml" --focus Focus --contextsaturation 1)
+  cube=("$out/cube-$mm/cube.mrml" --focus Focus --context-saturation 1)
   render "cube$mm-plane" "${cube[@]}" --clip plane
   render "cube$mm-cutaway" "${cube[@]}" --clip cutaway
   render "cube$mm-spline" "${cube[@]}" --clip surface
-  render "cube$mm-exact" "${cube[@]}" --boundary exact
+  render "cube$mm-exact" "${cube[@]}" --clip-boundary exact
   for boundary in spline exact; do
-    "$fenestra" "${cube[@]}" --boundary "$boundary" --size 256x256 --samples 1 --progress none \
-      --surface "$out/cube$mm-$boundary.ply" --output "$out/surface.png" >/dev/null
+    "$fenestra" "${cube[@]}" --clip-boundary "$boundary" --size 256x256 --samples 1 --quiet \
+      --surface "$out/cube$mm-$boundary.ply" --output "$out/surface.png"
     plot_surface "cube$mm-$boundary" "$mm"
   done
   join_images "figure3-$mm.jpg" "cube$mm-plane" "a  Cut plane" "cube$mm-cutaway" "b  Cut-away" \
@@ -94,6 +94,6 @@ cat >>"$page" <<'END'
 - At 1 mm, λ = (1 − p) / p = 1 is huge compared to the shape: the spline is close to the least-squares plane and misses the
   outline by a noticeable fraction of the cube. At 512 mm it almost interpolates.
 - "The continuity of the surface with the object boundary" in the paper's figure holds at a suitable size only. With
-  `--boundary exact` it holds at any size.
+  `--clip-boundary exact` it holds at any size.
 END
 write_section figure3

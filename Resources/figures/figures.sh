@@ -18,7 +18,7 @@ mkdir -p "$out"
 # make_phantom KIND [FOLDER [options]]: writes a phantom unless it exists.
 make_phantom() {
   local kind=$1 folder=$out/${2:-$1}
-  [ -s "$folder/$kind.nrrd" ] || "$fenestra" phantom "$kind" --output "$folder" "${@:3}" >/dev/null
+  [ -s "$folder/$kind.nrrd" ] || "$fenestra" phantom "$kind" --output "$folder" --quiet "${@:3}"
 }
 
 # render NAME arguments...: writes $out/NAME.png and NAME.json unless they exist from the same arguments
@@ -29,8 +29,8 @@ render() {
   local line="$* $size $samples $(stat -c %Y "$fenestra")"
   if [ "$(cat "$out/$name.arguments" 2>/dev/null)" != "$line" ]; then
     say "Rendering: $name"
-    "$fenestra" "$@" --size "${size}x$size" --samples "$samples" --progress none \
-      --output "$out/$name.png" --stats "$out/$name.json" >/dev/null
+    "$fenestra" "$@" --size "${size}x$size" --samples "$samples" --quiet \
+      --output "$out/$name.png" --stats-json "$out/$name.json"
     printf '%s' "$line" >"$out/$name.arguments"
   fi
 }

@@ -4,7 +4,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 
 names=(plane hole cutaway ghost spline exact)
-options=("--clip plane" "--clip hole" "--clip cutaway" "--clip ghost --ghost 0.004" "--clip surface" "--boundary exact")
+options=("--clip plane" "--clip hole" "--clip cutaway" "--clip ghost --ghost 0.004" "--clip surface" "--clip-boundary exact")
 titles=("Cut plane (placed by the focus)" "Virtual hole" "Cut-away" "Ghost, 0.004"
   "Clipping surface, spline" "Clipping surface, exact")
 page=$out/techniques.md
@@ -41,19 +41,19 @@ END
 
 make_phantom knee
 compare_techniques knee "Knee: femoral cartilage (synthetic MR)" "$out/knee/knee.nrrd" \
-  --segmentation "$out/knee/knee.seg.nrrd" --materials none --focus "Femoral cartilage" --labelsmoothing 0.6 --soft 2 \
+  --segmentation "$out/knee/knee.seg.nrrd" --materials none --focus "Femoral cartilage" --label-smoothing 0.6 --clip-softness 2 \
   --transfer mr-knee --position=-15,200,-90
 make_phantom foot
-compare_techniques foot "Foot: its bones (synthetic CT)" "$out/foot/foot.mrml" --materials none --focus bones --labelsmoothing 0.6 \
+compare_techniques foot "Foot: its bones (synthetic CT)" "$out/foot/foot.mrml" --materials none --focus bones --label-smoothing 0.6 \
   --transfer ct-skeleton --view superior
 liver=$data/torso_ct_ccth_a01
 if [ -d "$liver" ]; then
   compare_techniques liver "Liver (CT of the collection CC-Tumor-Heterogeneity, TCIA, CC BY 4.0)" "$liver/ct.nii.gz" \
-    --segmentation "$liver/seg_totalsegmentator_rtstruct.nii.gz" --materials none --focus 1 --labelsmoothing 2 \
+    --segmentation "$liver/seg_totalsegmentator_rtstruct.nii.gz" --materials none --focus 1 --label-smoothing 2 \
     --transfer ct-liver --view anterior
 else
   printf '\n**Liver**: SKIPPED: FENESTRA_DATA has no torso_ct_ccth_a01.\n' >>"$page"
 fi
 make_phantom cube cube256 --size 256 --edge 512
-compare_techniques cube "Cube of 512 mm (the paper's model)" "$out/cube256/cube.mrml" --focus Focus --contextsaturation 1
+compare_techniques cube "Cube of 512 mm (the paper's model)" "$out/cube256/cube.mrml" --focus Focus --context-saturation 1
 write_section techniques

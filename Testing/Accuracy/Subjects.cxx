@@ -128,8 +128,8 @@ std::vector<float> renderDepths(const Subject& subject, const View& view,
   std::ostringstream arguments;
   arguments.precision(17);
   arguments << quote(subject.input.string()) << " --focus " << quote(subject.focus)
-            << " --labelsmoothing " << subject.smoothing << " --soft 0 --boundary " << boundary
-            << " --position=" << toOptionValue(view.position)
+            << " --label-smoothing " << subject.smoothing << " --clip-softness 0 --clip-boundary "
+            << boundary << " --position=" << toOptionValue(view.position)
             << " --target=" << toOptionValue(view.target) << " --up=" << toOptionValue(view.up)
             << " --scale " << view.halfHeight << " --projection orthographic --size " << view.size
             << 'x' << view.size

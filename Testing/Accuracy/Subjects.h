@@ -14,7 +14,7 @@ struct Subject {
   std::filesystem::path labelmap; ///< on the volume's grid
   std::string focus;              ///< value of --focus
   int label;                      ///< label value of the focus
-  double smoothing = 0.0;         ///< label smoothing, mm (--labelsmoothing)
+  double smoothing = 0.0;         ///< label smoothing, mm (--label-smoothing)
   double elevation = 0.0;         ///< elevation of the camera above the horizon, degrees
 };
 
@@ -29,7 +29,7 @@ Indicator readIndicator(const Subject& subject);
 /// anterior. `elevation` in degrees.
 View makeView(const FocusField& field, int number, int count, int size, double elevation = 0.0);
 
-/// The tested surface, of `--clip surface --boundary …`: depth (mm from the camera plane) at a
+/// The tested surface, of `--clip surface --clip-boundary …`: depth (mm from the camera plane) at a
 /// raster position.
 Surface makeSurface(const Subject& subject, const View& view, const std::string& boundary);
 

@@ -21,7 +21,7 @@ rm -rf "$folder"
 mkdir -p "$folder"
 cd "$folder"
 for phantom in knee foot fetus; do
-  "$fenestra" phantom "$phantom" >/dev/null
+  "$fenestra" phantom "$phantom" --quiet
 done
 cat >cases.csv <<TABLE
 name,input,segmentation,labels,focus,preset,view
@@ -53,7 +53,7 @@ before=$(count_done_rows)
 grep -ls '"status": 0$' results/*/*.study.json | sed 's/study.json$/json/' | tr '\n' '\0' |
   xargs -0 sha256sum >finished.sums
 
-"${batch[@]}" | tee second.log
+"${batch[@]}" 2>&1 | tee second.log
 sha256sum --quiet -c finished.sums || fail "a finished row was rendered again"
 [ "$(count_done_rows)" -eq 12 ] || fail "$(count_done_rows) of 12 rows are done"
 grep -q "12 of 12 rows done, $((12 - before)) rendered now" second.log ||

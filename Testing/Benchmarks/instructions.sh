@@ -30,7 +30,7 @@ tolerance=3   # percent
 count_instructions() {
   FENESTRA_INSTRUCTIONS=AVX2 LD_PRELOAD=$work/timer.so valgrind --tool=callgrind --callgrind-out-file=/dev/null \
     "$program" "${@:2}" --samples "$1" --seed 1 --threads 1 --progress none \
-    --output "$work/image.exr" --stats "$work/stats.json" >"$work/log.txt" 2>&1 ||
+    --output "$work/image.exr" --stats-json "$work/stats.json" >"$work/log.txt" 2>&1 ||
     { tail -n 15 "$work/log.txt" >&2; die "callgrind failed (log: $work/log.txt)"; }
   sed -n 's/.*Collected : //p' "$work/log.txt"
   sed -n 's/.*"paths": \([0-9]*\),/\1/p' "$work/stats.json"
@@ -71,7 +71,7 @@ say "Instructions per path"
 rows=() slower=()
 for scene in S1 S2 S2hi knee; do
   before=$(get_recorded $scene)
-  arguments=("$knee/knee.mrml" --focus FemoralCartilage --clip surface --boundary exact --materials none --size $size)
+  arguments=("$knee/knee.mrml" --focus FemoralCartilage --clip surface --clip-boundary exact --materials none --size $size)
   if [ $scene != knee ]; then
     if [ ! -e "$reference/$scene.arguments" ]; then
       echo "$scene: SKIPPED, not found in $reference"

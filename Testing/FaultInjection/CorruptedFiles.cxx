@@ -145,7 +145,7 @@ Arguments prepare(const Target& target, long number, const Workspace& workspace)
     arguments = {"inspect", arguments[1], "--json"};
   else if (arguments[0] == "render")
     for (const char* word : {"--size", "8x8", "--samples", "1", "--bounces", "8", "--threads", "1",
-                             "--progress", "none", "--output", "o.png"})
+                             "--quiet", "--output", "o.png"})
       arguments.emplace_back(word);
   if (!target.isPacked) {
     workspace.fill(files);

@@ -18,21 +18,20 @@ Arguments concat(Arguments first, const Arguments& more) {
 }
 
 std::vector<Request> makeRequests() {
-  const Arguments quick = {"--size",    "16x16", "--samples",  "1",
-                           "--threads", "1",     "--progress", "none"};
+  const Arguments quick = {"--size", "16x16", "--samples", "1", "--threads", "1", "--quiet"};
   const Arguments render =
       concat({"render", "knee.mrb", "--focus", "FemoralCartilage", "--output", "o.exr", "--output",
-              "o.png", "--surface", "o.vtp", "--stats", "s.json"},
+              "o.png", "--surface", "o.vtp", "--stats-json", "s.json"},
              quick);
   const Arguments turntable = concat({"turntable", "knee.mrb", "--frames", "2", "--output", "t.png",
-                                      "--stats", "s.json", "--restart"},
+                                      "--stats-json", "s.json", "--restart"},
                                      quick);
   const Arguments batch = concat({"batch", "t.csv", "--output", "d"}, quick);
-  const Arguments phantom = {"phantom", "cube", "--output", "p", "--size", "16"};
+  const Arguments phantom = {"phantom", "cube", "--output", "p", "--size", "16", "--quiet"};
   const auto renderCheckpointed = [](const char* samples) {
-    return Arguments{"render",       "knee.mrb",  "--size",   "16x16",      "--samples",
-                     samples,        "--threads", "1",        "--progress", "none",
-                     "--checkpoint", "o.film",    "--output", "o.exr"};
+    return Arguments{"render", "knee.mrb",  "--size", "16x16",   "--samples",
+                     samples,  "--threads", "1",      "--quiet", "--checkpoint",
+                     "o.film", "--output",  "o.exr"};
   };
   const auto renderShard = [](const char* shard, const char* checkpoint) {
     return Arguments{"render", "knee.mrb", "--shard", shard, "--checkpoint", checkpoint};
@@ -45,7 +44,7 @@ std::vector<Request> makeRequests() {
   return {
       {"render",
        render,
-       {concat(render, {"--seed", "7", "--offset", "2"})},
+       {concat(render, {"--seed", "7", "--clip-offset", "2"})},
        {{"o.exr", "o.png", "o.vtp"}},
        "s.json",
        ""},
@@ -73,7 +72,7 @@ std::vector<Request> makeRequests() {
        "",
        "o.film"},
       {"merge",
-       {"merge", "a.film", "b.film", "--output", "o.exr", "--threads", "1", "--progress", "none"},
+       {"merge", "a.film", "b.film", "--output", "o.exr", "--threads", "1", "--quiet"},
        {concat(renderShard("1/2", "a.film"), quick), concat(renderShard("2/2", "b.film"), quick),
         concat({"render", "knee.mrb", "--seed", "7", "--output", "o.exr"}, quick)},
        {{"o.exr"}},

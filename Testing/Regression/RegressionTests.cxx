@@ -92,11 +92,11 @@ const std::vector<Mutation> mutations = {
      }},
     {"ExtinctionPlus2Percent", "fog",
      [](const auto&, RegressionCase& c) {
-       c.arguments.insert(c.arguments.end(), {"--density", "1.02"});
+       c.arguments.insert(c.arguments.end(), {"--density-scale", "1.02"});
      }},
     {"ExtinctionMinus2Percent", "fog",
      [](const auto&, RegressionCase& c) {
-       c.arguments.insert(c.arguments.end(), {"--density", "0.98"});
+       c.arguments.insert(c.arguments.end(), {"--density-scale", "0.98"});
      }},
 };
 

@@ -257,7 +257,7 @@ TEST(TintContrast, InterfacesAreWeightedByArea) {
   EXPECT_GT(chooseLightness(1.0, 10.0), 0.0);
 }
 
-/// With --contextsaturation 0, the context is gray in any tint.
+/// With --context-saturation 0, the context is gray in any tint.
 TEST(TintContrast, ConsidersTheSaturationOfTheContext) {
   const InterfaceColors colors{liver, teal, 1.0};
   const Contrast gray = measureAdjustedContrast({}, colors, 0.0, 0.0);
