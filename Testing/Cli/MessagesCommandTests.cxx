@@ -58,7 +58,11 @@ TEST_F(MessagesCommand, QuietPrintsNothing) {
       EXPECT_EQ(outcome.out, "") << command.front();
       EXPECT_EQ(outcome.messages, "") << command.front();
     }
-  EXPECT_EQ(runWith(listCommands().front(), {"-q", "--progress", "bar"}).messages, "");
+  // Long enough for a bar.
+  EXPECT_EQ(
+      runWith({"volume.nrrd", "--size", "32x32", "--seconds", "0.5", "-q"}, {"--progress", "bar"})
+          .messages,
+      "");
 }
 
 TEST_F(MessagesCommand, QuietKeepsWarningsAndErrors) {

@@ -287,6 +287,7 @@ TEST_F(NamesCommand, RangesInErrorsArePlainNumbers) {
     const Outcome outcome = run({"volume.nrrd", option, "x"}, folder.path());
     EXPECT_EQ(outcome.status, 2);
     EXPECT_EQ(outcome.err.find("e+"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find(" to "), std::string::npos) << outcome.err; // no absurd bound
   }
 }
 
