@@ -24,11 +24,13 @@ inline void expectMessage(const Message& message, const std::string& expected) {
   std::size_t end = expected.find(" | ");
   const std::string head = expected.substr(0, end);
   const std::size_t colon = head.find(": ");
-  if (colon != 0)
+  if (colon != 0) {
     EXPECT_EQ(toString(message.code), head.substr(0, colon)) << line;
-  if (colon != std::string::npos)
+  }
+  if (colon != std::string::npos) {
     EXPECT_NE(line.find(head.substr(colon + 2) + ": "), std::string::npos)
         << line << "\nexpected: " << expected;
+  }
   while (end != std::string::npos) {
     const std::size_t begin = end + 3;
     end = expected.find(" | ", begin);

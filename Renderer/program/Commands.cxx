@@ -3,6 +3,7 @@
 #include "base/Error.h"
 #include "program/BatchTable.h"
 #include "program/CommandLine.h"
+#include "program/ErrorAdvice.h"
 #include "program/Help.h"
 #include "program/Messages.h"
 #include "program/RenderOptions.h"
@@ -48,7 +49,7 @@ std::span<const Command> commands() {
 int dispatch(int argc, char** argv) {
   if (argc <= 1) {
     std::cerr << makeUsage();
-    return static_cast<int>(ErrorKind::usage);
+    return exitStatus(ErrorKind::request);
   }
   const std::string_view given = argv[1];
   if (given == "help") {

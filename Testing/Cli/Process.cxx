@@ -156,7 +156,7 @@ double Process::cpuSeconds() const {
 
 bool Process::waitForMessage(const std::string& expression) const {
   const std::regex pattern(expression);
-  return waitUntil([&] { return std::regex_search(messages(), pattern); }, getTimeLimit());
+  return waitUntil([&] { return std::regex_search(messages(), pattern); });
 }
 
 Outcome Process::wait() {

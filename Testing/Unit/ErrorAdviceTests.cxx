@@ -11,7 +11,6 @@
 #include "scene/Defaults.h"
 #include "scene/NamedPresets.h"
 
-#include <map>
 #include <regex>
 #include <set>
 
@@ -31,24 +30,13 @@ TEST(ErrorCodes, EachHasItsOwnWord) {
     EXPECT_TRUE(words.insert(toString(code)).second) << toString(code);
 }
 
-/// Options that advice names, by the table's names for them; empty once the table has these.
-const std::map<std::string, std::string> renamedOptions = {{"label-smoothing", "labelsmoothing"},
-                                                           {"transfer-shift", "shift"},
-                                                           {"density-scale", "density"}};
-
-bool isOption(const std::string& name) {
-  const auto renamed = renamedOptions.find(name);
-  return findOption(renderSyntax.options, name) ||
-         (renamed != renamedOptions.end() && findOption(renderSyntax.options, renamed->second));
-}
-
 TEST(ErrorAdvice, NamesOnlyExistingOptions) {
   const std::regex option("--([a-z-]+)");
   int count = 0;
   for (const ErrorCode code : listCodes()) {
     const std::string advice(findAdvice(code));
     for (std::sregex_iterator it(advice.begin(), advice.end(), option), end; it != end; ++it) {
-      EXPECT_TRUE(isOption(it->str(1))) << advice;
+      EXPECT_TRUE(findOption(renderSyntax.options, it->str(1))) << advice;
       ++count;
     }
   }
