@@ -89,7 +89,7 @@ bool isSampleOption(const Option& option) {
 
 ordered_json makeProvenance(const OptionValues& given, const OptionValues& options,
                             const fs::path& folder) {
-  return {{"version", concat(versionText, " on ", processorText)},
+  return {{"version", concat(samplingVersionText, " on ", processorText)},
           {"given", collectOptions(given, folder, isImageOption)},
           {"settings", collectOptions(options, folder, isSampleOption)}};
 }

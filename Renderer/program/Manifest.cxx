@@ -95,7 +95,7 @@ void checkRequest(const JsonNode& request) {
 Manifest::Manifest(fs::path path, std::string itemKey, const std::vector<std::string>& arguments)
     : m_path(std::move(path)),
       m_itemKey(std::move(itemKey)),
-      m_request{{"version", versionText}, {"arguments", arguments}} {}
+      m_request{{"version", samplingVersionText}, {"arguments", arguments}} {}
 
 void Manifest::addInputs(const std::set<fs::path>& files) {
   addRequest("inputs", listFileStates(files, folder()));

@@ -55,8 +55,8 @@ void writeEvent(const nlohmann::ordered_json& content) {
 void writeErrorEvent(const json& id, const Message& message) {
   writeEvent({{"event", "error"},
               {"id", id},
-              {"code", toString(message.code)},
-              {"message", composeMessage(message)}});
+              {"message", composeMessage(message)},
+              {"code", toString(message.code)}});
 }
 
 json readId(const json& change) {
