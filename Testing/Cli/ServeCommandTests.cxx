@@ -37,7 +37,8 @@ protected:
   /// Waits for the error event of a change, or of a line without a valid id (null).
   static bool waitForError(const Process& process, const std::string& id,
                            const std::string& message) {
-    return process.waitForOutput("\"error\",\"id\":" + id + ",\"message\":\"[^\n]*" + message + "[^\n]*\",\"code\":\"[a-z-]+\"");
+    return process.waitForOutput("\"error\",\"id\":" + id + ",\"message\":\"[^\n]*" + message +
+                                 "[^\n]*\",\"code\":\"[a-z-]+\"");
   }
 
   /// Image of `fenestra volume.nrrd …` with these options.

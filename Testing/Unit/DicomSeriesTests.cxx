@@ -122,7 +122,7 @@ TEST(DicomSeries, SortsSlicesAlongTheirNormal) {
   folder.write("notes.txt", "not DICOM");
   const Volume volume = readSingleSeries(folder.path());
   EXPECT_EQ(volume.grid.size, Size3(5, 4, 5));
-  EXPECT_TRUE(volume.warnings.empty()) << volume.warnings[0];
+  EXPECT_TRUE(volume.warnings.empty()) << volume.warnings[0].text();
   for (int z = 0; z < 5; ++z)
     for (int y = 0; y < 4; ++y)
       for (int x = 0; x < 5; ++x) {

@@ -196,7 +196,7 @@ TEST(PhantomFoot, TissuesHaveTypicalHounsfieldUnits) {
   EXPECT_NEAR(computeMedian(foot, "achilles_tendon"), 100.0, 20.0);
   EXPECT_GT(computeMedian(foot, "talus"), 300.0);
   const FootSubject layers;
-  const FootSite shaft = layers.makeSite({-14.0, 168.0, 39.0});
+  const FootSite shaft = layers.makeSite({-14.0, 168.0, 39.0}, infinity);
   EXPECT_LT(footMarrowHu(shaft), 0.0) << "the canal of a metatarsal contains fat";
   EXPECT_GT(footCortexHu(shaft), 1200.0);
   EXPECT_NEAR(getVoxels(foot).front(), -1000.0, 60.0) << "air";
@@ -208,7 +208,7 @@ TEST(PhantomFoot, SkinCoversEveryBone) {
   for (double x = -54; x <= 52; x += 2.0)
     for (double y = 0; y <= 268; y += 2.0)
       for (double z = 2; z <= 130; z += 2.0) {
-        const FootSite s = layers.makeSite({x, y, z});
+        const FootSite s = layers.makeSite({x, y, z}, infinity);
         if (s.bones[s.nearest] < 0.0)
           thinnest = std::min(thinnest, -s.surface);
       }
