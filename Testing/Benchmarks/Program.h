@@ -1,6 +1,7 @@
 #pragma once
 // Parts of the benchmark programs: CPU time, and error handling of main().
 
+#include "program/Commands.h"
 #include "program/ErrorAdvice.h"
 
 #include <sys/resource.h>
@@ -20,9 +21,11 @@ inline double cpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Runs a benchmark, prints the error that it throws, and returns the exit status for main().
+/// Runs a benchmark with the instruction set of FENESTRA_INSTRUCTIONS, prints the error that it
+/// throws, and returns the exit status for main().
 inline int runBenchmark(const char* name, int (*benchmark)(int, char**), int argc, char** argv) {
   try {
+    pinInstructions();
     return benchmark(argc, argv);
   } catch (const Error& error) {
     std::cerr << name << ": " << error.what() << '\n';

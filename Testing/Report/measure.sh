@@ -8,7 +8,7 @@
 #   efficiency  error against CPU time (EfficiencyBenchmark); nothing else should run on the machine
 # Only if named, since they need more: figures, the images and numbers of Resources/figures.
 # Writes OUT/PART.entry and OUT/PART.csv; `bash Testing/evidence.sh store OUT` puts them into the record.
-# Environment: FENESTRA_REFERENCE and FENESTRA_DATA, folders of the scenes [those of the build]; FENESTRA_TRIAL=1 runs
+# Environment: FENESTRA_INSTRUCTIONS [AVX2]; FENESTRA_REFERENCE and FENESTRA_DATA, folders of the scenes [those of the build]; FENESTRA_TRIAL=1 runs
 # a small piece of each part, which cannot be stored.
 set -euo pipefail
 testing=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -21,14 +21,15 @@ bin=$(cd "$1/bin" && pwd) || die "$1: not a build folder"
 out=$(mkdir -p "$2" && cd "$2" && pwd)
 shift 2
 [ $# -gt 0 ] || set -- matrix mutations denoiser efficiency
+export FENESTRA_INSTRUCTIONS=${FENESTRA_INSTRUCTIONS:-AVX2} # what most users have
 export FENESTRA_MUTATION_LIST=$testing/Statistical/Mutations/mutations.json
 cores=$(nproc)
 trial=${FENESTRA_TRIAL:+trial-}
 counts=2,4,8,16,64
-denoised=(S1 S2 S2hi knee brain spine torso) # of denoiser-scenes.txt
+denoised=(S1 S2 S2hi knee brain spine) # of denoiser-scenes.txt
 scenes=(S1 S2 S2hi knee-exact foot-clipped)  # of scenes.txt
 modes=(product scalar global marching)
-budget=150
+budget=80
 if [ -n "$trial" ]; then
   export FENESTRA_COMBINATIONS=8 FENESTRA_MUTATIONS=MajorantFromMaxScalar
   counts=4 denoised=(S1 S2) scenes=(S1 S2) modes=(product scalar global) budget=1
@@ -39,7 +40,7 @@ write_entry() {
   local cpu commit
   cpu=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1 | tr , ' ')
   commit=$("$bin/fenestra" --version | sed -n 's/^commit: \([^,]*\).*/\1/p')
-  printf '%s,%s,%s,%s,%s,"%s"\n' "$1" "$(date +%F)" "${cpu:-unknown CPU}" "$cores" "$trial$commit" "$2" |
+  printf '%s,%s,%s,%s,%s,"%s"\n' "$1" "$(date +%F)" "${cpu:-unknown CPU} ($FENESTRA_INSTRUCTIONS)" "$cores" "$trial$commit" "$2" |
     tee "$out/$1.entry"
 }
 
