@@ -117,8 +117,8 @@ QString qSlicerFenestraSession::writePropertyFile(const SlicerExport::Contents& 
   QFile file(m_files->folder.filePath(name + QString::fromStdString(contents.propertyExtension)));
   if (file.size() != text.size() &&
       (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size()))
-    throw SlicerExport::UserError("The transfer function could not be written. Is the disk "
-                                  "with the temporary files full?");
+    throw SlicerExport::UserError("The transfer function could not be written. " +
+                                  file.errorString().toStdString() + ".");
   return file.fileName();
 }
 

@@ -169,8 +169,8 @@ void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::pa
   std::ostringstream text;
   text << std::ifstream(file.path, std::ios::binary).rdbuf();
   if (!written || text.str().empty())
-    throw UserError("The volume rendering's settings could not be written to the temporary folder. "
-                    "Is the disk full?");
+    throw UserError("The volume rendering's settings could not be written to " +
+                    file.path.string() + ".");
   contents.property = text.str();
   contents.propertyExtension = extension;
   cache = {property, time, contents.property, extension};

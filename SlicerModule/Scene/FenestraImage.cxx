@@ -1,9 +1,11 @@
 #include "FenestraImage.h"
 
+#include <cerrno>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 #include <vector>
 
 namespace SlicerExport {
@@ -123,6 +125,10 @@ std::size_t Image::bytes() const {
   return componentBytes(type) * components * size[0] * size[1] * size[2];
 }
 
+FileError makeWriteError(const std::filesystem::path& file) {
+  return makeError(file, "cannot be written: " + std::generic_category().message(errno));
+}
+
 void writeNrrd(const Image& image, const std::filesystem::path& file) {
   std::filesystem::path partial = file;
   partial += ".part";
@@ -133,9 +139,10 @@ void writeNrrd(const Image& image, const std::filesystem::path& file) {
               static_cast<std::streamsize>(image.bytes()));
     out.close();
     if (!out) {
+      const FileError error = makeWriteError(file);
       std::error_code ignored;
       std::filesystem::remove(partial, ignored);
-      throw makeError(file, "cannot be written; is the disk full?");
+      throw error;
     }
   }
   std::filesystem::rename(partial, file);

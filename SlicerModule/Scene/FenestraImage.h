@@ -36,6 +36,9 @@ struct Image {
 /// Bytes of a component type; 0: not an NRRD type.
 std::size_t componentBytes(const std::string& type);
 
+/// Error for a file that could not be written just now; the reason is that of `errno`.
+FileError makeWriteError(const std::filesystem::path& file);
+
 /// Writes raw data in this machine's byte order. Throws FileError; then no file is left.
 void writeNrrd(const Image& image, const std::filesystem::path& file);
 

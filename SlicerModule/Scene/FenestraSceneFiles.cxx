@@ -22,7 +22,7 @@ void writeText(const std::string& text, const std::filesystem::path& file) {
   out << text;
   out.close();
   if (!out)
-    throw FileError(file.string() + ": cannot be written; is the disk full?");
+    throw makeWriteError(file);
 }
 
 /// Text of a scene, one node per line. Values never come from users, so nothing needs escaping.
@@ -241,10 +241,16 @@ void Writer::writeOrLink(const Image& image, const std::string& key, WrittenFile
   }
 }
 
-std::filesystem::path Writer::write(const Contents& contents) {
-  const std::filesystem::path folder = m_folder / std::to_string(++m_written);
+void createFolder(const std::filesystem::path& folder) {
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
+  if (failed)
+    throw FileError(folder.string() + ": cannot be created: " + failed.message());
+}
+
+std::filesystem::path Writer::write(const Contents& contents) {
+  const std::filesystem::path folder = m_folder / std::to_string(++m_written);
+  createFolder(folder);
   writeOrLink(contents.volume, contents.volumeKey, m_volume, folder / "volume.nrrd");
   if (!contents.segmentation.segments.empty())
     writeOrLink(makeSegmentationImage(contents.segmentation), contents.segmentationKey,

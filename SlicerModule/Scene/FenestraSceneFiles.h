@@ -65,6 +65,9 @@ Image composeLayers(const std::vector<Layer>& layers);
 /// for queries by name, tags and color. Throws FileError.
 void writeSegmentNames(std::vector<Segment> segments, const std::filesystem::path& file);
 
+/// Creates a folder and its parents unless it exists. Throws FileError.
+void createFolder(const std::filesystem::path& folder);
+
 /// Writes scenes into numbered folders of a private folder; files that are unchanged since the
 /// preceding scene become hard links.
 class Writer {

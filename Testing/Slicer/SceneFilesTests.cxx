@@ -8,7 +8,9 @@
 
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <numeric>
+#include <system_error>
 
 namespace fenestra {
 namespace {
@@ -62,6 +64,30 @@ TEST(SlicerSceneFiles, DamagedNrrdAndMissingFolderAreRejected) {
   EXPECT_THROW(SlicerExport::readNrrd(folder / "other.nrrd"), SlicerExport::FileError);
   EXPECT_THROW(SlicerExport::writeNrrd(makeRamp({1, 1, 1}), folder / "none" / "image.nrrd"),
                SlicerExport::FileError);
+}
+
+/// The message has the system's reason, not a guess.
+TEST(SlicerSceneFiles, ErrorsHaveTheirReason) {
+  const TemporaryFolder folder;
+  folder.write("file", "");
+  const auto getReason = [](const std::function<void()>& write) {
+    try {
+      write();
+      return std::string();
+    } catch (const SlicerExport::FileError& error) {
+      const std::string message = error.what();
+      return message.substr(message.rfind(": ") + 2);
+    }
+  };
+  const auto reason = [](std::errc code) { return std::make_error_code(code).message(); };
+  const SlicerExport::Image ramp = makeRamp({1, 1, 1});
+  EXPECT_EQ(getReason([&] { SlicerExport::writeNrrd(ramp, folder / "none" / "image.nrrd"); }),
+            reason(std::errc::no_such_file_or_directory));
+  SlicerExport::Contents contents;
+  contents.volume = ramp;
+  EXPECT_EQ(getReason([&] { SlicerExport::Writer(folder / "file").write(contents); }),
+            reason(std::errc::not_a_directory));
+  SlicerExport::Writer(folder / "new" / "folder").write(contents); // created
 }
 
 TEST(SlicerSceneFiles, ComposedLayersKeepTheirPositions) {
