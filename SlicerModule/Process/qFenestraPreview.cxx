@@ -6,9 +6,7 @@
 #include <QJsonDocument>
 
 qFenestraPreview::qFenestraPreview(QObject* parent) : QObject(parent) {
-  constexpr int defaultDelay = 60;
   m_delay.setSingleShot(true);
-  m_delay.setInterval(defaultDelay);
   connect(&m_delay, &QTimer::timeout, this, &qFenestraPreview::sendChanges);
 }
 
@@ -26,6 +24,7 @@ void qFenestraPreview::start(const QString& program, const QStringList& argument
 void qFenestraPreview::stop() {
   m_delay.stop();
   m_changes = {};
+  m_isWaiting = false;
   if (!m_child)
     return;
   qFenestraProgram* const child = m_child;
@@ -43,7 +42,8 @@ void qFenestraPreview::stop() {
 void qFenestraPreview::change(const QJsonObject& flags) {
   for (auto flag = flags.begin(); flag != flags.end(); ++flag)
     m_changes[flag.key()] = flag.value();
-  m_delay.start();
+  if (!m_delay.isActive())
+    m_delay.start();
 }
 
 QJsonObject qFenestraPreview::toJson(const std::map<std::string, std::string>& flags) {
@@ -59,17 +59,20 @@ QJsonObject qFenestraPreview::toJson(const std::map<std::string, std::string>& f
 }
 
 void qFenestraPreview::sendChanges() {
-  if (!running() || m_changes.isEmpty())
+  if (!running() || m_changes.isEmpty() || m_isWaiting)
     return;
   m_changes["id"] = ++m_lastId;
   m_child->write(QJsonDocument(m_changes).toJson(QJsonDocument::Compact) + '\n');
   m_changes = {};
+  m_isWaiting = true;
 }
 
 void qFenestraPreview::readEvent(const QString& line) {
   const QJsonObject reply = QJsonDocument::fromJson(line.toUtf8()).object();
   if (reply["id"].toInt(0) != m_lastId)
     return;
+  m_isWaiting = false;
+  m_delay.start();
   if (reply["event"] == "error")
     emit refused(reply["message"].toString());
   if (reply["event"] != "picture")

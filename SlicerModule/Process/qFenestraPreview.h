@@ -1,6 +1,6 @@
 #pragma once
-// Preview that follows the user's changes: sends them to `fenestra serve` after a short delay, and
-// receives images of increasing quality.
+// Preview that follows the user's changes: sends them to `fenestra serve`, and receives images of
+// increasing quality.
 
 #include "qFenestraProgram.h"
 
@@ -25,9 +25,6 @@ class qFenestraPreview : public QObject {
 public:
   explicit qFenestraPreview(QObject* parent = nullptr);
 
-  /// Delay between the last change and sending, in milliseconds.
-  void setDelay(int milliseconds) { m_delay.setInterval(milliseconds); }
-
   /// Starts `fenestra serve arguments…` and stops the running preview. `files` is kept alive until
   /// the child has ended, even after stop().
   void start(const QString& program, const QStringList& arguments, const QString& folder,
@@ -39,7 +36,9 @@ public:
   /// Folder to which the image files are relative.
   QString folder() const { return m_child ? m_child->workingDirectory() : QString(); }
 
-  /// Changes flags, with values as `fenestra serve` takes them; later values win.
+  /// Changes flags, with values as `fenestra serve` takes them; later values win. Each change ends
+  /// the render of the one before. It is therefore sent once there is an image of that one, so that
+  /// images arrive however fast the changes are.
   void change(const QJsonObject& flags);
   /// Flags as `fenestra serve` takes them: a string, or a list of strings for a repeatable flag.
   static QJsonObject toJson(const std::map<std::string, std::string>& flags);
@@ -56,7 +55,8 @@ private:
   void readEvent(const QString& line);
 
   qFenestraProgram* m_child = nullptr; ///< null: no server
-  QTimer m_delay;
-  QJsonObject m_changes; ///< not sent yet
-  int m_lastId = 0;      ///< number of changes sent; also the id of the last one
+  QTimer m_delay;                      ///< 0 ms; merges the changes of one action
+  QJsonObject m_changes;               ///< not sent yet
+  int m_lastId = 0;                    ///< number of changes sent; also the id of the last one
+  bool m_isWaiting = false;            ///< for the first reply to the last change
 };

@@ -346,6 +346,22 @@ TEST_F(SlicerPreview, FastChangesAreSentAsOne) {
   EXPECT_TRUE(refusals.isEmpty());
 }
 
+/// Changes that come faster than an image is rendered, like those of a dragged camera.
+TEST_F(SlicerPreview, ImagesArriveDuringFastChanges) {
+  preview.start(program, {"volume.nrrd", "--size=256x256", "--samples=100000000", "--output=p.png"},
+                path());
+  ASSERT_TRUE(waitFor([this] { return !images.empty(); }));
+  images.clear();
+  int changes = 0;
+  QTimer drag;
+  QObject::connect(&drag, &QTimer::timeout, [&] {
+    preview.change({{"scale", QString::number(2.0 + 0.01 * ++changes)}});
+  });
+  drag.start(1);
+  EXPECT_TRUE(waitFor([&] { return images.size() > 2; })) << refusals.join(" ").toStdString();
+  EXPECT_GT(changes, 3);
+}
+
 TEST_F(SlicerPreview, RefusedChangeKeepsThePreviewRunning) {
   start("2");
   ASSERT_TRUE(waitForDone());
