@@ -12,8 +12,6 @@
 qSlicerFenestraModule::qSlicerFenestraModule(QObject* parent) : Superclass(parent) {}
 
 qSlicerFenestraModule::~qSlicerFenestraModule() {
-  if (fenestraLogic())
-    fenestraLogic()->SetRenderer(nullptr);
   delete m_session; // before the logic that it uses
 }
 
@@ -23,13 +21,7 @@ vtkSlicerFenestraLogic* qSlicerFenestraModule::fenestraLogic() {
 
 void qSlicerFenestraModule::setup() {
   Superclass::setup();
-  fenestraLogic()->SetRenderer([this] { return session(); });
-}
-
-qSlicerFenestraSession* qSlicerFenestraModule::session() {
-  if (!m_session)
-    m_session = new qSlicerFenestraSession(fenestraLogic(), program(), this);
-  return m_session;
+  m_session = new qSlicerFenestraSession(fenestraLogic(), program(), this);
 }
 
 void qSlicerFenestraModule::setMRMLScene(vtkMRMLScene* scene) {
@@ -43,7 +35,7 @@ void qSlicerFenestraModule::onSceneClosed() {
     m_session->closeScene();
 }
 
-QString qSlicerFenestraModule::formatHelp() const {
+QString qSlicerFenestraModule::helpText() const {
   return tr("Photorealistic rendering of a volume with an unobstructed view of the anatomy of "
             "interest. Choose a volume, a segmentation and the segments to show; a smooth surface "
             "through them clips the tissue in front. See the <a "

@@ -23,7 +23,7 @@ public:
   ~qSlicerFenestraModule() override;
 
   qSlicerGetTitleMacro(QTMODULE_TITLE);
-  QString formatHelp() const override;
+  QString helpText() const override;
   QString acknowledgementText() const override;
   QStringList contributors() const override;
   QIcon icon() const override;
@@ -33,8 +33,8 @@ public:
 
   /// Path of the renderer installed with this module.
   QString program() const;
-  /// Renders for the panel and for scripts; created on first use.
-  qSlicerFenestraSession* session();
+  /// Renders for the panel and for scripts; null before setup.
+  qSlicerFenestraSession* session() const { return m_session; }
 
 public slots:
   void setMRMLScene(vtkMRMLScene* scene) override;

@@ -15,8 +15,6 @@
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 
-#include <algorithm>
-
 namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
@@ -65,7 +63,15 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
   constexpr int interval = 60; // ms; merges the changes of a mouse drag
   m_refreshTimer.setSingleShot(true);
   m_refreshTimer.setInterval(interval);
-  m_preview.setDelay(0);
+  qvtkConnect(m_logic, vtkSlicerFenestraLogic::RenderRequestedEvent, this,
+              SLOT(onRenderRequested(vtkObject*, vtkObject*)));
+  qvtkConnect(m_logic, vtkSlicerFenestraLogic::RenderWaitEvent, this,
+              SLOT(onRenderWait(vtkObject*, vtkObject*)));
+  qvtkConnect(m_logic, vtkSlicerFenestraLogic::StopRequestedEvent, this, SLOT(stop()));
+  constexpr int sampleInterval = 500; // ms
+  m_sampleTimer.setInterval(sampleInterval);
+  connect(&m_sampleTimer, &QTimer::timeout, this,
+          [this] { emit sampleProgressed(static_cast<double>(m_sampleTime.elapsed()) / 1000.0); });
   connect(&m_refreshTimer, &QTimer::timeout, this, &qSlicerFenestraSession::updatePreview);
   connect(&m_preview, &qFenestraPreview::refreshed, this, &qSlicerFenestraSession::showPreview);
   connect(&m_preview, &qFenestraPreview::refused, this, [this](const QString& message) {
@@ -77,6 +83,8 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
   });
   connect(&m_queue, &qFenestraQueue::started, this, [this](int id) {
     m_renderTime.start();
+    if (Node* node = m_renders[id].node)
+      node->SetRenderState(Node::Running);
     emit started(m_renders[id].node);
   });
   connect(&m_queue, &qFenestraQueue::progressed, this, [this](int id, double fraction) {
@@ -154,26 +162,29 @@ void qSlicerFenestraSession::write(
 // ---- renders
 
 vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind kind) {
+  return kind == Kind::turntable ? m_logic->RenderTurntable(settings) : m_logic->Render(settings);
+}
+
+void qSlicerFenestraSession::onRenderRequested(vtkObject*, vtkObject* render) {
+  Node* node = Node::SafeDownCast(render);
+  const int id = ++m_lastId;
+  m_renders[id] = {node, m_files, {}};
+  node->SetRenderState(Node::Queued);
   SlicerExport::Contents contents;
   try {
     if (!QFileInfo(m_program).isExecutable())
       throw SlicerExport::UserError(
           "The renderer is missing. Install the Fenestra extension again.");
-    contents = m_logic->Snapshot(settings, m_files->folder.path().toStdString());
+    contents = m_logic->Snapshot(node, m_files->folder.path().toStdString());
   } catch (const SlicerExport::UserError& error) {
-    emit ended(nullptr, toFailure(QString::fromUtf8(error.what()), m_program));
-    return nullptr;
+    return endRender(id, toFailure(QString::fromUtf8(error.what()), m_program));
   }
   m_preview.stop();
-  Node* node = m_logic->AddRender(settings, kind == Kind::turntable);
   node->SetFlags(
       SlicerExport::filterMaterialFlags(contents.segmentation.segments, node->GetFlags()));
-  const int id = ++m_lastId;
-  m_renders[id] = {node, m_files, {}};
-  const bool withSurface = vtkSlicerFenestraLogic::HasSurface(node->GetFlags()) &&
-                           !contents.segmentation.segments.empty();
+  const bool withSurface =
+      vtkSlicerFenestraLogic::HasSurface(node) && !contents.segmentation.segments.empty();
   submit(id, contents, withSurface);
-  return node;
 }
 
 /// Writes the scene and queues the render. The voxels are shared with Slicer: an edit during the
@@ -183,9 +194,8 @@ void qSlicerFenestraSession::submit(int id, const SlicerExport::Contents& conten
   write(contents, [=](const QString& scene, const QString& message) {
     Render& render = m_renders[id];
     if (!message.isEmpty())
-      return endRender(id, toFailure(tr("The volume could not be written for the renderer. Is the "
-                                        "disk with the temporary files full?"),
-                                     message));
+      return endRender(id, toFailure(tr("The volume could not be written for the renderer. %1.")
+                                         .arg(toUserText(message, render.files->folder.path()))));
     render.folder = QFileInfo(scene).absolutePath();
     if (render.stopped || !render.node)
       return endRender(id, {Ended::stopped, {}, {}});
@@ -203,24 +213,15 @@ void qSlicerFenestraSession::submit(int id, const SlicerExport::Contents& conten
   });
 }
 
-Node* qSlicerFenestraSession::start(Node* settings, bool turntable) {
-  return render(settings, turntable ? Kind::turntable : Kind::picture);
-}
-
-bool qSlicerFenestraSession::isActive(Node* node) const {
-  return std::any_of(m_renders.begin(), m_renders.end(),
-                     [node](const Render& render) { return render.node == node; });
-}
-
-void qSlicerFenestraSession::waitFor(Node* node) {
+/// Processes events, except user input, until the render has ended.
+void qSlicerFenestraSession::onRenderWait(vtkObject*, vtkObject* render) {
   QEventLoop loop;
-  connect(this, &qSlicerFenestraSession::ended, &loop, [this, node, &loop] {
-    if (!isActive(node))
+  connect(this, &qSlicerFenestraSession::ended, &loop, [&loop, node = Node::SafeDownCast(render)] {
+    if (!node->IsRendering())
       loop.quit();
   });
   connect(this, &QObject::destroyed, &loop, &QEventLoop::quit);
-  if (isActive(node))
-    loop.exec(QEventLoop::ExcludeUserInputEvents);
+  loop.exec(QEventLoop::ExcludeUserInputEvents);
 }
 
 /// Passes all flags on the command line, which the renderer trusts more than a scene.
@@ -233,7 +234,7 @@ QStringList qSlicerFenestraSession::makeArguments(Node* render, const QString& s
 }
 
 bool qSlicerFenestraSession::canResume(Node* turntable) const {
-  return m_results.lacksFrames(turntable) && !isActive(turntable);
+  return m_results.lacksFrames(turntable) && !turntable->IsRendering();
 }
 
 void qSlicerFenestraSession::resume(Node* turntable) {
@@ -241,6 +242,7 @@ void qSlicerFenestraSession::resume(Node* turntable) {
     return;
   m_preview.stop();
   const int id = ++m_lastId;
+  turntable->SetRenderState(Node::Queued);
   const QString folder = m_results.findFolder(turntable);
   m_renders[id] = {turntable, m_files, folder};
   m_queue.add({id, makeArguments(turntable, folder + "/scene.mrml", false), folder});
@@ -323,28 +325,35 @@ void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) 
         QFile::remove(render.folder + "/" + file);
   if (!hasResult)
     removeFolder(render.folder);
+  const QString message = toUserText(outcome.message, render.files->folder.path());
+  const QString problem =
+      outcome.kind == Ended::failed ? message : tr("Stopped before there was an image.");
   if (node)
-    node->EndRender(hasResult ? std::string() : outcome.message.toStdString());
+    node->EndRender(hasResult ? std::string() : problem.toStdString());
   if (node && !hasResult && node->GetScene())
     node->GetScene()->RemoveNode(node);
-  emit ended(
-      hasResult ? node.GetPointer() : nullptr,
-      {outcome.kind, toUserText(outcome.message, render.files->folder.path()), outcome.details});
+  emit ended(hasResult ? node.GetPointer() : nullptr, {outcome.kind, message, outcome.details});
   if (!isRendering())
     refresh();
 }
 
 void qSlicerFenestraSession::makeSample(
     const std::function<void(const QString& scene, const QString& failure)>& then) {
+  if (m_sampleTimer.isActive())
+    return;
   if (!m_sample)
     m_sample = std::make_unique<qFenestraFolder>(QDir::tempPath(), folderPrefix);
   const QString folder = m_sample->filePath("knee");
   auto* child = new qFenestraProgram(this);
   connect(child, &qFenestraProgram::ended, this,
-          [child, folder, then](const qFenestraOutcome& outcome) {
+          [this, child, folder, then](const qFenestraOutcome& outcome) {
             child->deleteLater();
+            m_sampleTimer.stop();
             const bool isDone = outcome.kind == Ended::done;
             then(isDone ? folder + "/knee.mrml" : QString(), outcome.message + outcome.details);
           });
   child->run(m_program, {"phantom", "knee", "--output", folder}, m_sample->path());
+  m_sampleTime.start();
+  m_sampleTimer.start();
+  emit sampleProgressed(0.0);
 }

@@ -17,6 +17,8 @@
 #include <QThreadPool>
 #include <QTimer>
 
+#include <ctkVTKObject.h>
+
 #include <functional>
 #include <memory>
 
@@ -29,10 +31,10 @@
 ///
 /// A worker thread writes and reads the files, in a private folder that is removed with the scene.
 /// Only the main thread changes the scene. During a render there is no preview, which would slow
-/// the render down.
-class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraSession : public QObject,
-                                                                  public FenestraRenderer {
+/// the render down. Renders are requested from the logic, whose events the session observes.
+class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraSession : public QObject {
   Q_OBJECT
+  QVTK_OBJECT
 
 public:
   qSlicerFenestraSession(vtkSlicerFenestraLogic* logic, const QString& program,
@@ -40,18 +42,13 @@ public:
   ~qSlicerFenestraSession() override;
 
   enum class Kind { picture, turntable };
-  /// Adds a render of the settings to the scene and to the queue. Null: an input is missing;
-  /// `ended` reports the reason.
+  /// Requests a render of the settings from the logic. Null: an input is missing; `ended` reports
+  /// the reason.
   vtkMRMLFenestraRenderNode* render(vtkMRMLFenestraRenderNode* settings, Kind kind = Kind::picture);
-  vtkMRMLFenestraRenderNode* start(vtkMRMLFenestraRenderNode* settings, bool turntable) override;
-  bool isActive(vtkMRMLFenestraRenderNode* render) const override;
-  void waitFor(vtkMRMLFenestraRenderNode* render) override;
   /// True if the turntable is incomplete and can be resumed here.
   bool canResume(vtkMRMLFenestraRenderNode* turntable) const;
   /// Renders the missing frames.
   void resume(vtkMRMLFenestraRenderNode* turntable);
-  /// Stops the current render and keeps finished results; a second call discards them.
-  void stop() override;
   /// True once the current render has been asked to stop.
   bool isStopping() const { return isRendering() && m_renders.first().stopped; }
   /// Stops all renders, and drops results and files of the closed scene.
@@ -68,12 +65,14 @@ public:
   void preview(vtkMRMLFenestraRenderNode* settings);
 
   /// Generates the synthetic sample knee, then calls `then` with the path of its scene or with an
-  /// error message.
+  /// error message. `sampleProgressed` reports the time until then. Ignored while one is generated.
   void makeSample(const std::function<void(const QString& scene, const QString& failure)>& then);
 
   const qSlicerFenestraResults& results() const { return m_results; }
 
 public slots:
+  /// Stops the current render and keeps finished results; a second call discards them.
+  void stop();
   /// Updates the preview. Call when settings, camera, volume, segments or transfer function may
   /// have changed.
   void refresh();
@@ -87,12 +86,18 @@ signals:
   void started(vtkMRMLFenestraRenderNode* render);
   /// `fraction`: finished fraction, 0 to 1; `seconds`: elapsed time.
   void progressed(vtkMRMLFenestraRenderNode* render, double fraction, double seconds);
+  /// The sample is being generated for `seconds`: 0 at once, then twice a second.
+  void sampleProgressed(double seconds);
   /// Samples and noise of the current render, as text.
   void statusChanged(const QString& text);
   /// The process of the current render has ended; its result is not read yet.
   void renderStopped();
   /// The render's result, if any, is in the scene.
   void ended(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
+
+private slots:
+  void onRenderRequested(vtkObject* logic, vtkObject* render);
+  void onRenderWait(vtkObject* logic, vtkObject* render);
 
 private:
   static constexpr const char* folderPrefix = "fenestra-slicer-";
@@ -135,6 +140,8 @@ private:
   /// Folder of the sample, once generated. It outlives the scene: it holds no patient data, and
   /// saved scenes may refer to it.
   std::unique_ptr<qFenestraFolder> m_sample;
+  QElapsedTimer m_sampleTime;
+  QTimer m_sampleTimer; ///< active while the sample is generated
   QThreadPool m_worker;
 
   qFenestraCapabilityQuery m_capabilityQuery;
@@ -147,7 +154,7 @@ private:
   int m_lastId = 0;
 
   qFenestraPreview m_preview;
-  QTimer m_refreshTimer; ///< merges rapid changes
+  QTimer m_refreshTimer; ///< merges changes; not restarted by further ones
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_previewed;
   std::string m_previewKey; ///< key of the data in the preview's scene
   QString m_previewFolder;

@@ -80,24 +80,22 @@ Node* vtkSlicerFenestraLogic::AddRender(Node* settings, bool turntable) {
   if (!scene || !settings)
     return nullptr;
   vtkMRMLNode* volume = settings->GetNodeReference(Node::VolumeRole);
-  const std::string name =
+  const std::string base =
       std::string(volume ? volume->GetName() : "Volume") + (turntable ? " turntable" : " render");
-  auto* render = Node::SafeDownCast(scene->AddNewNodeByClass(
-      "vtkMRMLFenestraRenderNode", scene->GenerateUniqueName(name.c_str())));
+  std::string name = base; // the scene's GenerateUniqueName also counts renders that failed
+  for (int i = 1; scene->GetFirstNodeByName(name.c_str()); ++i)
+    name = base + "_" + std::to_string(i);
+  auto* render = Node::SafeDownCast(scene->AddNewNodeByClass("vtkMRMLFenestraRenderNode", name));
   for (const char* role : {Node::VolumeRole, Node::SegmentationRole, Node::ViewRole})
     render->SetNodeReferenceID(role, settings->GetNodeReferenceID(role));
   for (const std::string& attribute : settings->GetAttributeNames())
     render->SetAttribute(attribute.c_str(), settings->GetAttribute(attribute.c_str()));
   std::map<std::string, std::string> flags = this->GetFlags(settings);
-  for (const std::string& name : Node::GetTurntableFlagNames())
+  for (const std::string& flag : Node::GetTurntableFlagNames())
     if (!turntable)
-      flags.erase(name);
+      flags.erase(flag);
   render->SetFlags(flags);
   return render;
-}
-
-void vtkSlicerFenestraLogic::SetRenderer(std::function<FenestraRenderer*()> renderer) {
-  this->Renderer = std::move(renderer);
 }
 
 Node* vtkSlicerFenestraLogic::Render(Node* settings, bool wait) {
@@ -109,33 +107,35 @@ Node* vtkSlicerFenestraLogic::RenderTurntable(Node* settings, bool wait) {
 }
 
 Node* vtkSlicerFenestraLogic::Start(Node* settings, bool turntable, bool wait) {
-  FenestraRenderer* renderer = this->Renderer ? this->Renderer() : nullptr;
-  if (!settings || !renderer) {
-    vtkErrorMacro("Render: " << (settings ? "the Fenestra module is not loaded" : "no settings"));
+  const vtkSmartPointer<Node> render = this->AddRender(settings, turntable);
+  if (!render) {
+    vtkErrorMacro("Render: " << (settings ? "no scene" : "no settings"));
     return nullptr;
   }
-  vtkSmartPointer<Node> render = renderer->start(settings, turntable);
-  if (!render || !wait)
-    return render;
-  renderer->waitFor(render);
-  return render->GetScene() && render->GetNodeReference(Node::PictureRole) ? render.GetPointer()
-                                                                           : nullptr;
+  this->InvokeEvent(RenderRequestedEvent, render.GetPointer());
+  if (render->GetRenderState() == Node::NotRequested) {
+    vtkErrorMacro("Render: the Fenestra module is not loaded");
+    this->GetMRMLScene()->RemoveNode(render);
+  }
+  if (wait && render->IsRendering())
+    this->InvokeEvent(RenderWaitEvent, render.GetPointer());
+  const bool failed = !render->GetScene() || (wait && !render->GetNodeReference(Node::PictureRole));
+  return failed ? nullptr : render.GetPointer();
 }
 
 void vtkSlicerFenestraLogic::StopRender() {
-  if (FenestraRenderer* renderer = this->Renderer ? this->Renderer() : nullptr)
-    renderer->stop();
+  this->InvokeEvent(StopRequestedEvent);
 }
 
 bool vtkSlicerFenestraLogic::IsRendering(Node* render) {
-  FenestraRenderer* renderer = this->Renderer ? this->Renderer() : nullptr;
-  return renderer && render && renderer->isActive(render);
+  return render && render->IsRendering();
 }
 
 std::string vtkSlicerFenestraLogic::WriteScene(Node* render, const std::string& folder) {
   if (!render)
     return {};
   try {
+    SlicerExport::createFolder(folder); // TakeRendering uses it, too
     return SlicerExport::Writer(folder).write(this->Snapshot(render, folder)).string();
   } catch (const std::exception& error) {
     vtkErrorMacro("WriteScene: " << error.what());
@@ -176,6 +176,13 @@ std::vector<SlicerExport::Segment> vtkSlicerFenestraLogic::GetSegments(Node* ren
           : nullptr;
   return segmentation ? vtkSlicerFenestraSnapshot::ListSegments(segmentation)
                       : std::vector<SlicerExport::Segment>();
+}
+
+std::vector<std::string> vtkSlicerFenestraLogic::GetSegmentIDs(Node* render) {
+  std::vector<std::string> ids;
+  for (const SlicerExport::Segment& segment : GetSegments(render))
+    ids.push_back(segment.id);
+  return ids;
 }
 
 vtkMRMLCameraNode* vtkSlicerFenestraLogic::GetFollowedCamera(Node* render) {
@@ -227,11 +234,12 @@ std::string vtkSlicerFenestraLogic::GetPlaneFlag(vtkMRMLNode* node) {
   return formatTriple(origin) + "," + formatTriple(normal);
 }
 
-bool vtkSlicerFenestraLogic::HasSurface(const std::map<std::string, std::string>& flags) {
-  const auto clip = flags.find("clip");
-  const std::string mode = clip == flags.end() ? "" : clip->second;
+bool vtkSlicerFenestraLogic::HasSurface(Node* render) {
+  if (!render)
+    return false;
+  const std::string mode = render->GetFlag("clip");
   if (mode.empty() || mode == "auto") // all presets clip by surface
-    return flags.count("focus") > 0 || flags.count("preset") > 0;
+    return !render->GetFlag("focus").empty() || !render->GetFlag("preset").empty();
   return mode != "none" && mode != "plane";
 }
 

@@ -5,7 +5,6 @@
 
 #include <vtkSmartPointer.h>
 
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -23,9 +22,9 @@ class vtkMRMLSliceLogic;
 class vtkMRMLVolumeNode;
 class vtkPolyData;
 
-/// Result of a render, read from its files. The name has no prefix `vtk`, because VTK's Python
-/// wrapper treats structs with that prefix as VTK classes. A turntable has only `picture`, with one
-/// frame per slice.
+#ifndef __VTK_WRAP__
+/// Result of a render, read from its files. A turntable has only `picture`, with one frame per
+/// slice.
 struct FenestraResult {
   SlicerExport::Image radiance;          ///< linear RGBA, placed in the world
   SlicerExport::Image depth;             ///< mm from the camera; infinite: nothing visible
@@ -33,23 +32,12 @@ struct FenestraResult {
   vtkSmartPointer<vtkPolyData> surface;  ///< clipping surface, RAS; null: none
 };
 
-/// Background renderer. The module implements it with Qt's processes, since the logic does not
-/// depend on Qt.
-class FenestraRenderer {
-public:
-  virtual ~FenestraRenderer() = default;
-  /// Adds a node for a render of the settings and queues it; null: failed, the log says why.
-  virtual vtkMRMLFenestraRenderNode* start(vtkMRMLFenestraRenderNode* settings, bool turntable) = 0;
-  virtual bool isActive(vtkMRMLFenestraRenderNode* render) const = 0;
-  /// Returns when the render has ended; processes events except user input.
-  virtual void waitFor(vtkMRMLFenestraRenderNode* render) = 0;
-  /// Stops the current render and keeps finished results.
-  virtual void stop() = 0;
-};
+#endif
 
-/// \brief Converts between Slicer's scene and the renderer's files.
+/// \brief Converts between Slicer's scene and the renderer's files, and requests renders.
 ///
-/// All calls are quick: other threads write and read the files (SlicerExport::Writer, ReadResult).
+/// Calls are quick, except WriteScene and waiting: other threads write and read the files
+/// (SlicerExport::Writer, ReadResult). Methods for Python do not throw.
 class VTK_SLICER_FENESTRA_MODULE_LOGIC_EXPORT vtkSlicerFenestraLogic : public vtkSlicerModuleLogic {
 public:
   static vtkSlicerFenestraLogic* New();
@@ -63,6 +51,10 @@ public:
   /// Only a turntable's node keeps the turntable flags.
   vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings, bool turntable = false);
 
+  /// Requests to the renderer, which observes them: the module's session. The call data of the
+  /// first two is the render's node. RenderRequestedEvent: set the node's state, render, and call
+  /// its EndRender. RenderWaitEvent: return when the render has ended.
+  enum { RenderRequestedEvent = 62180, RenderWaitEvent, StopRequestedEvent };
   /// Renders the settings in the background and returns the render's node, which reports progress
   /// and end as events (RenderProgressEvent, RenderEndEvent). Null: failed, the log says why.
   /// `wait`: returns after the end; then null also means that there is no image.
@@ -71,16 +63,19 @@ public:
                                              bool wait = false);
   /// Stops the current render and keeps finished results.
   void StopRender();
-  bool IsRendering(vtkMRMLFenestraRenderNode* render);
-  /// Sets the function that returns the renderer; called whenever the renderer is needed.
-  void SetRenderer(std::function<FenestraRenderer*()> renderer);
+  static bool IsRendering(vtkMRMLFenestraRenderNode* render);
 
-  /// Writes the scene as the renderer would receive it into a folder and returns its path; empty:
-  /// failed, the log says why.
+  /// Writes the scene as the renderer would receive it into a folder, created if missing, and
+  /// returns its path; empty: failed, the log says why.
   std::string WriteScene(vtkMRMLFenestraRenderNode* render, const std::string& folder);
   /// Sets the view to that of a camera, as flags.
   void UseCamera(vtkMRMLFenestraRenderNode* render, vtkMRMLCameraNode* camera);
+  /// IDs of the node's segments, for SetFocus; empty without a segmentation.
+  static std::vector<std::string> GetSegmentIDs(vtkMRMLFenestraRenderNode* render);
+  /// True if a render of the node has a clipping surface.
+  static bool HasSurface(vtkMRMLFenestraRenderNode* render);
 
+#ifndef __VTK_WRAP__ // functions that throw, or have types that Python does not know
   /// Collects all inputs of the renderer except the flags, without copying voxels. `folder`:
   /// private, for data that Slicer can only write as files. Throws SlicerExport::UserError.
   SlicerExport::Contents Snapshot(vtkMRMLFenestraRenderNode* render,
@@ -90,25 +85,24 @@ public:
   /// The node's flags, and those of its 3D view's camera unless another flag sets the view.
   std::map<std::string, std::string> GetFlags(vtkMRMLFenestraRenderNode* render);
   static std::map<std::string, std::string> GetCameraFlags(vtkMRMLCameraNode* camera);
-  /// Flag value of a plane of the Markups module; empty: no plane, or not placed yet.
-  static std::string GetPlaneFlag(vtkMRMLNode* plane);
-  /// Camera of the node's 3D view; null: flags set the view.
-  vtkMRMLCameraNode* GetFollowedCamera(vtkMRMLFenestraRenderNode* render);
-
   /// Reads a result from `folder`; the file names are those of GetArguments. Throws
   /// SlicerExport::FileError. Thread-safe.
   static FenestraResult ReadResult(const std::string& folder);
-  /// Command-line arguments for rendering the node, with the outputs that ReadResult reads.
-  static std::vector<std::string> GetArguments(vtkMRMLFenestraRenderNode* render, bool withSurface);
-  /// Finished frames of a turntable in `folder`, from frame 0 to the first missing one.
-  static std::vector<std::string> GetFrameFiles(const std::string& folder);
-  /// True if a render with these flags has a clipping surface.
-  static bool HasSurface(const std::map<std::string, std::string>& flags);
-
   /// Adds nodes of the result, referenced by the render: one per step, so that the application
   /// stays responsive. `step`: 0 to ResultSteps - 1. Replaces the frames of a resumed turntable.
   void AddResult(vtkMRMLFenestraRenderNode* render, const FenestraResult& result, int step);
   static constexpr int ResultSteps = 4;
+#endif
+
+  /// Flag value of a plane of the Markups module; empty: no plane, or not placed yet.
+  static std::string GetPlaneFlag(vtkMRMLNode* plane);
+  /// Camera of the node's 3D view; null: flags set the view.
+  vtkMRMLCameraNode* GetFollowedCamera(vtkMRMLFenestraRenderNode* render);
+  /// Command-line arguments for rendering the node, with the outputs that ReadResult reads.
+  static std::vector<std::string> GetArguments(vtkMRMLFenestraRenderNode* render, bool withSurface);
+  /// Finished frames of a turntable in `folder`, from frame 0 to the first missing one.
+  static std::vector<std::string> GetFrameFiles(const std::string& folder);
+
   /// Shows the scene's newest volume in the slice views, which loading a scene does not do.
   void ShowNewestVolume();
   /// Shows the render's image beside a 3D view, in the module's own layout.
@@ -133,10 +127,13 @@ protected:
   /// Registers the module's layout, which the scene may have been saved with.
   void OnMRMLSceneStartImport() override;
   void OnMRMLSceneNodeRemoved(vtkMRMLNode* node) override;
+  /// Fits the image to its view, whose size changes after the layout has created it.
+  void OnMRMLNodeModified(vtkMRMLNode* node) override;
 
 private:
   vtkMRMLFenestraRenderNode* Start(vtkMRMLFenestraRenderNode* settings, bool turntable, bool wait);
   vtkMRMLSliceLogic* GetPictureSliceLogic();
+  void FitPicture(vtkMRMLSliceLogic* sliceLogic);
   SlicerExport::Matrix MoveOutsideVolume(vtkMRMLFenestraRenderNode* render,
                                          const SlicerExport::Matrix& ijkToRas);
   void MoveToRenderFolder(vtkMRMLFenestraRenderNode* render, vtkMRMLNode* result);
@@ -146,8 +143,8 @@ private:
                                const char* role, vtkImageData* image,
                                const SlicerExport::Matrix& ijkToRas);
 
-  std::function<FenestraRenderer*()> Renderer;
-  int PreviousLayout = 3; ///< vtkMRMLLayoutNode::SlicerLayoutFourUpView
+  int PreviousLayout = 3;     ///< vtkMRMLLayoutNode::SlicerLayoutFourUpView
+  int FittedSize[2] = {0, 0}; ///< of the image's view, pixels
 };
 
 #endif

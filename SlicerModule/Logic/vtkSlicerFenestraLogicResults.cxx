@@ -2,6 +2,7 @@
 
 #include "vtkMRMLFenestraRenderNode.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -35,11 +36,11 @@ constexpr const char* PictureViewId = "vtkMRMLSliceNodeFenestra"; // class and s
 constexpr int ResultLayout = 5617; // larger than the numbers of Slicer's own layouts
 constexpr const char* ResultLayoutXml =
     "<layout type=\"horizontal\" split=\"true\">"
-    "<item splitSize=\"600\"><view class=\"vtkMRMLSliceNode\" singletontag=\"Fenestra\">"
+    "<item splitSize=\"500\"><view class=\"vtkMRMLSliceNode\" singletontag=\"Fenestra\">"
     "<property name=\"orientation\" action=\"default\">Axial</property>"
     "<property name=\"viewlabel\" action=\"default\">F</property>"
     "<property name=\"viewcolor\" action=\"default\">#6FB1C8</property></view></item>"
-    "<item splitSize=\"400\"><view class=\"vtkMRMLViewNode\" singletontag=\"1\">"
+    "<item splitSize=\"500\"><view class=\"vtkMRMLViewNode\" singletontag=\"1\">"
     "<property name=\"viewlabel\" action=\"default\">1</property></view></item></layout>";
 
 vtkSmartPointer<vtkImageData> ToVtk(const SlicerExport::Image& image) {
@@ -153,7 +154,8 @@ void vtkSlicerFenestraLogic::OnMRMLSceneStartImport() {
 std::vector<std::string> vtkSlicerFenestraLogic::GetFrameFiles(const std::string& folder) {
   std::vector<std::string> files;
   std::string next = MakeFrameFileName(folder, 0);
-  while (std::filesystem::exists(next)) {
+  std::error_code unreadable; // counts as missing
+  while (std::filesystem::exists(next, unreadable)) {
     files.push_back(next);
     next = MakeFrameFileName(folder, static_cast<int>(files.size()));
   }
@@ -343,7 +345,7 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
     return;
   auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
   vtkMRMLLayoutNode* layout = FindLayoutNode(this->GetMRMLScene());
-  if (!picture || !layout)
+  if (!layout || GetNumberOfFrames(render) == 0)
     return;
   layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
   if (layout->GetViewArrangement() != ResultLayout)
@@ -355,12 +357,29 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
     return;
   vtkMRMLSliceNode* slice = sliceLogic->GetSliceNode();
   vtkMRMLSliceCompositeNode* composite = sliceLogic->GetSliceCompositeNode();
+  // The view moves the plane into the range of its slider, which must know the image before.
+  const int wasModifying = slice->StartModify();
+  AlignSliceWithFrame(picture, 0, slice);
   composite->SetBackgroundVolumeID(picture->GetID());
   composite->SetForegroundVolumeID(nullptr);
   composite->SetLabelVolumeID(nullptr);
-  AlignSliceWithFrame(picture, 0, slice);
-  const int* viewSize = slice->GetDimensions();               // pixels
-  sliceLogic->FitSliceToBackground(viewSize[0], viewSize[1]); // else the image's sides are cut off
+  slice->EndModify(wasModifying);
+  this->FitPicture(sliceLogic);
+  vtkUnObserveMRMLNodeMacro(slice);
+  vtkObserveMRMLNodeMacro(slice);
+}
+
+void vtkSlicerFenestraLogic::FitPicture(vtkMRMLSliceLogic* sliceLogic) {
+  std::copy_n(sliceLogic->GetSliceNode()->GetDimensions(), 2, this->FittedSize);
+  sliceLogic->FitSliceToBackground(this->FittedSize[0], this->FittedSize[1]);
+}
+
+void vtkSlicerFenestraLogic::OnMRMLNodeModified(vtkMRMLNode* node) {
+  auto* slice = vtkMRMLSliceNode::SafeDownCast(node);
+  if (!slice || std::equal(this->FittedSize, this->FittedSize + 2, slice->GetDimensions()))
+    return;
+  if (this->GetShownRender())
+    this->FitPicture(this->GetPictureSliceLogic());
 }
 
 Node* vtkSlicerFenestraLogic::GetShownRender() {

@@ -2,6 +2,7 @@
 
 #include "FenestraFlags.h"
 
+#include <vtkMRMLNodePropertyMacros.h>
 #include <vtkObjectFactory.h>
 
 #include <algorithm>
@@ -11,6 +12,13 @@
 using SlicerExport::Verdict;
 
 namespace {
+std::vector<std::string> getNames(const std::map<std::string, std::string>& values) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values)
+    names.push_back(name);
+  return names;
+}
+
 /// Attributes of vtkMRMLNode.
 const std::set<std::string> baseAttributes = {
     "attributes", "description", "hideFromEditors", "id",           "name",       "references",
@@ -58,10 +66,20 @@ const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetTurntableFlagNames
   return names;
 }
 
-void vtkMRMLFenestraRenderNode::SetFlag(const std::string& name, const std::string& value) {
-  std::map<std::string, std::string> flags = this->Flags;
+bool vtkMRMLFenestraRenderNode::SetFlag(const std::string& name, const std::string& value) {
+  const std::vector<std::string>& names = GetFlagNames();
+  const bool isKnown = std::find(names.begin(), names.end(), name) != names.end();
+  const bool isValid = value.empty() || SlicerExport::checkFlag(name, value) != Verdict::invalid;
+  if (!isKnown || !isValid) {
+    vtkErrorMacro("SetFlag: " << (isKnown ? "wrong value \"" + value + "\" of the option \""
+                                          : std::string("there is no option \""))
+                              << name << "\"");
+    return false;
+  }
+  Values flags = this->Flags;
   flags[name] = value;
   this->SetFlags(flags);
+  return true;
 }
 
 std::string vtkMRMLFenestraRenderNode::GetFlag(const std::string& name) const {
@@ -73,12 +91,28 @@ void vtkMRMLFenestraRenderNode::SetFlags(const std::map<std::string, std::string
   std::map<std::string, std::string> valid, withheld = this->Withheld;
   for (const std::string& name : GetFlagNames()) {
     const auto found = flags.find(name);
-    if (found == flags.end() || found->second.empty())
+    if (found == flags.end() || SlicerExport::checkFlag(name, found->second) == Verdict::invalid)
       continue;
     valid.insert(*found);
     withheld.erase(name);
   }
   this->Assign(valid, withheld, this->Unknown);
+}
+
+const std::map<std::string, std::string>& vtkMRMLFenestraRenderNode::GetFlags() const {
+  return this->Flags;
+}
+
+const std::map<std::string, std::string>& vtkMRMLFenestraRenderNode::GetWithheld() const {
+  return this->Withheld;
+}
+
+std::vector<std::string> vtkMRMLFenestraRenderNode::GetActiveFlagNames() const {
+  return getNames(this->Flags);
+}
+
+std::vector<std::string> vtkMRMLFenestraRenderNode::GetWithheldFlagNames() const {
+  return getNames(this->Withheld);
 }
 
 void vtkMRMLFenestraRenderNode::Assign(Values flags, Values withheld, Values unknown) {
@@ -116,6 +150,7 @@ void vtkMRMLFenestraRenderNode::SetProgress(double fraction) {
 }
 
 void vtkMRMLFenestraRenderNode::EndRender(const std::string& problem) {
+  this->RenderState = Ended;
   this->Problem = problem;
   this->InvokeEvent(RenderEndEvent);
 }
@@ -133,15 +168,15 @@ void vtkMRMLFenestraRenderNode::ReadXMLAttributes(const char** atts) {
   Superclass::ReadXMLAttributes(atts);
   const std::vector<std::string>& names = GetFlagNames();
   Values flags, withheld, unknown;
-  for (; atts[0] && atts[1]; atts += 2) {
-    const std::string name = atts[0];
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
-      if (baseAttributes.count(name) == 0)
-        unknown[name] = atts[1];
-    } else if (*atts[1] != '\0') {
-      (SlicerExport::checkFlag(name, atts[1]) == Verdict::valid ? flags : withheld)[name] = atts[1];
-    }
+  vtkMRMLReadXMLBeginMacro(atts);
+  const std::string name = xmlReadAttName, value = xmlReadAttValue;
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    if (baseAttributes.count(name) == 0)
+      unknown[name] = value;
+  } else if (!value.empty()) {
+    (SlicerExport::checkFlag(name, value) == Verdict::valid ? flags : withheld)[name] = value;
   }
+  vtkMRMLReadXMLEndMacro();
   this->Assign(flags, withheld, unknown);
   this->EndModify(wasModifying);
 }
@@ -171,6 +206,11 @@ void vtkMRMLFenestraRenderNode::CopyContent(vtkMRMLNode* node, bool deepCopy) {
 
 void vtkMRMLFenestraRenderNode::PrintSelf(ostream& os, vtkIndent indent) {
   Superclass::PrintSelf(os, indent);
+  vtkMRMLPrintBeginMacro(os, indent);
+  vtkMRMLPrintIntMacro(RenderState);
+  vtkMRMLPrintFloatMacro(Progress);
+  vtkMRMLPrintStdStringMacro(Problem);
+  vtkMRMLPrintEndMacro();
   for (const auto& [name, value] : this->Flags)
     os << indent << name << ": " << value << '\n';
   for (const auto& [name, value] : this->Withheld)

@@ -47,14 +47,15 @@ public:
   /// flags.
   bool IsTurntable() { return !this->GetSingletonTag() && !this->GetFlag("frames").empty(); }
 
-  /// Values as on the command line; empty: flag not set.
-  void SetFlag(const std::string& name, const std::string& value);
+  /// Sets a value as on the command line; empty: removes it. Returns false and logs an error for an
+  /// unknown name or a wrong value, without a change.
+  bool SetFlag(const std::string& name, const std::string& value);
   std::string GetFlag(const std::string& name) const;
-  void SetFlags(const std::map<std::string, std::string>& flags);
-  const std::map<std::string, std::string>& GetFlags() const { return this->Flags; }
+  /// Names of the flags that are set.
+  std::vector<std::string> GetActiveFlagNames() const;
 
-  /// Flags of the scene that are withheld; setting a flag removes its withheld value.
-  const std::map<std::string, std::string>& GetWithheld() const { return this->Withheld; }
+  /// Names of the flags of a scene that are withheld; setting a flag removes its withheld value.
+  std::vector<std::string> GetWithheldFlagNames() const;
   /// True if a withheld value names a file.
   bool WithholdsFiles() const;
   /// Accepts withheld file names as flags, after the user has allowed them.
@@ -68,13 +69,21 @@ public:
   vtkGetMacro(Progress, double);
   /// Sets the fraction and invokes RenderProgressEvent.
   void SetProgress(double fraction);
-  /// Why the render ended without an image, as a sentence; empty: it has one, or still runs.
+  /// State of a background render. Not saved.
+  enum { NotRequested, Queued, Running, Ended };
+  vtkGetMacro(RenderState, int);
+  /// Sets Queued or Running; EndRender sets Ended.
+  void SetRenderState(int state) { this->RenderState = state; }
+  bool IsRendering() const { return this->RenderState == Queued || this->RenderState == Running; }
+  /// Why the render ended without an image, as a sentence; empty: it has one, or has not ended.
   const std::string& GetProblem() const { return this->Problem; }
-  /// Invokes RenderEndEvent; `problem` is empty after success.
+  /// Ends the render and invokes RenderEndEvent; `problem` is empty after success.
   void EndRender(const std::string& problem);
 
-  /// Focus segments by id, name or label value: the flag `focus`, split at its commas.
+  /// Focus segments by id, name or label value: the flag `focus`, split at its commas. A single
+  /// text is the flag itself: several segments are separated by commas; null: no focus.
   void SetFocus(const std::vector<std::string>& segments);
+  void SetFocus(const char* segments) { this->SetFlag("focus", segments ? segments : ""); }
   std::vector<std::string> GetFocus() const;
 
   /// Roles for SetNodeReferenceID and GetNodeReference, for scripts, which cannot read constants.
@@ -99,6 +108,13 @@ public:
   /// Attribute of a result: measures selected from the renderer's statistics, a JSON object.
   static const char* const MeasuresAttribute;
 
+#ifndef __VTK_WRAP__ // Python has no std::map
+  /// Replaces all flags. Leaves out unknown names and wrong values.
+  void SetFlags(const std::map<std::string, std::string>& flags);
+  const std::map<std::string, std::string>& GetFlags() const;
+  const std::map<std::string, std::string>& GetWithheld() const; ///< flags that are withheld
+#endif
+
 protected:
   vtkMRMLFenestraRenderNode();
   ~vtkMRMLFenestraRenderNode() override;
@@ -109,6 +125,7 @@ protected:
   void Assign(Values flags, Values withheld, Values unknown);
 
   double Progress = 0.0;
+  int RenderState = NotRequested;
   std::string Problem;
   Values Flags, Withheld;
   Values Unknown; ///< attributes of the scene that neither this class nor its base knows

@@ -147,7 +147,7 @@ int checkStop(qSlicerFenestraSession& session, Node* settings, SignalRecorder& r
 }
 
 /// Failures leave no node. `ids`: of a segment and of an empty segment.
-int checkFailures(vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session, Node* settings,
+int checkFailures(qSlicerFenestraSession& session, Node* settings,
                   const std::vector<std::string>& ids, SignalRecorder& recorder) {
   vtkMRMLScene* const scene = settings->GetScene();
   const int nodes = scene->GetNumberOfNodes();
@@ -164,7 +164,9 @@ int checkFailures(vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session
   CHECK_BOOL(waitFor([&] { return recorder.ended == 5; }), true);
   CHECK_INT(static_cast<int>(recorder.last.kind), static_cast<int>(Kind::failed));
   CHECK_INT(scene->GetNumberOfNodes(), nodes);
-  qSlicerFenestraSession broken(logic, "/nowhere/fenestra");
+  vtkNew<vtkSlicerFenestraLogic> otherLogic;
+  otherLogic->SetMRMLScene(scene);
+  qSlicerFenestraSession broken(otherLogic, "/nowhere/fenestra");
   SignalRecorder recorderOfBroken(broken);
   CHECK_NULL(broken.render(settings));
   CHECK_BOOL(recorderOfBroken.last.message.contains("missing"), true);
@@ -182,7 +184,7 @@ int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node
   for (int i = 0; i < 20 && (!other || id != other->GetID()); ++i)
     other = Node::SafeDownCast(scene->AddNewNodeByClass("vtkMRMLFenestraRenderNode"));
   CHECK_STD_STRING(std::string(other->GetID()), id);
-  other->SetFlag("frames", "x");
+  other->SetFlag("frames", "8");
   CHECK_BOOL(session.results().findFile(other, "png").isEmpty(), true);
   CHECK_BOOL(session.results().findFrames(other).isEmpty(), true);
   CHECK_BOOL(session.canResume(other), false);
@@ -192,17 +194,21 @@ int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node
 }
 
 /// Render, events and removal, as a script uses them.
-int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session,
-                Node* settings) {
+int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settings) {
   TESTING_OUTPUT_ASSERT_ERRORS_BEGIN();
   CHECK_NULL(logic->Render(nullptr));
+  const int nodes = scene->GetNumberOfNodes();
+  vtkNew<vtkSlicerFenestraLogic> unobserved;
+  unobserved->SetMRMLScene(scene);
+  CHECK_NULL(unobserved->Render(settings, true));
+  CHECK_INT(scene->GetNumberOfNodes(), nodes);
   TESTING_OUTPUT_ASSERT_ERRORS_END();
   CHECK_NULL(logic->AddRender(nullptr));
-  logic->SetRenderer([&session] { return &session; });
   settings->SetFlags({{"samples", "8"}, {"size", "48x40"}, {"transfer", "ct-soft"}});
   Node* render = logic->Render(settings);
   CHECK_NOT_NULL(render);
   CHECK_BOOL(logic->IsRendering(render), true);
+  CHECK_INT(render->GetRenderState(), Node::Queued);
   int progressEvents = 0, endEvents = 0;
   vtkNew<vtkCallbackCommand> count;
   count->SetCallback(
@@ -214,7 +220,8 @@ int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, qSlicerFenes
       [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
   end->SetClientData(&endEvents);
   render->AddObserver(Node::RenderEndEvent, end);
-  session.waitFor(render);
+  CHECK_BOOL(waitFor([&] { return !render->IsRendering(); }), true);
+  CHECK_INT(render->GetRenderState(), Node::Ended);
   CHECK_BOOL(progressEvents > 0, true);
   CHECK_INT(endEvents, 1);
   CHECK_STD_STRING(render->GetProblem(), "");
@@ -227,6 +234,25 @@ int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, qSlicerFenes
   scene->RemoveNode(finished);
   CHECK_NULL(scene->GetNodeByID(picture));
   CHECK_NULL(scene->GetNodeByID(depth));
+  return EXIT_SUCCESS;
+}
+
+/// The time of the sample is reported at once; a second request meanwhile is ignored.
+int checkSample(qSlicerFenestraSession& session) {
+  double seconds = -1.0;
+  int calls = 0;
+  QString scene;
+  QObject::connect(&session, &qSlicerFenestraSession::sampleProgressed, &session,
+                   [&](double now) { seconds = now; });
+  const auto count = [&](const QString& file, const QString&) { scene = file, ++calls; };
+  session.makeSample(count);
+  CHECK_DOUBLE(seconds, 0.0);
+  session.makeSample(count);
+  CHECK_BOOL(waitFor([&] { return calls > 0; }), true);
+  CHECK_INT(calls, 1);
+  CHECK_BOOL(seconds > 0.0, true);
+  CHECK_BOOL(QFileInfo::exists(scene), true);
+  session.disconnect(SIGNAL(sampleProgressed(double)));
   return EXIT_SUCCESS;
 }
 
@@ -276,8 +302,9 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   CHECK_STD_STRING(second->GetFlag("seed"), "5");
   CHECK_EXIT_SUCCESS(compareWithCommandLine(scene, second, program, folder));
   CHECK_EXIT_SUCCESS(checkStop(session, settings, recorder));
-  CHECK_EXIT_SUCCESS(checkFailures(logic, session, settings, ids, recorder));
-  CHECK_EXIT_SUCCESS(checkScript(scene, logic, session, settings));
+  CHECK_EXIT_SUCCESS(checkFailures(session, settings, ids, recorder));
+  CHECK_EXIT_SUCCESS(checkScript(scene, logic, settings));
+  CHECK_EXIT_SUCCESS(checkSample(session));
   CHECK_EXIT_SUCCESS(checkAnotherScene(scene, session, second));
   return EXIT_SUCCESS;
 }

@@ -170,7 +170,14 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   const vtkMTimeType before = first->GetMTime();
   first->SetFlag("clip", "surface");
   CHECK_BOOL(first->GetMTime() == before, true);
-  first->SetFlag("clip", "");
+  TESTING_OUTPUT_ASSERT_ERRORS_BEGIN();
+  CHECK_BOOL(first->SetFlag("mood", "dark"), false);
+  CHECK_BOOL(first->SetFlag("clip", "Surface"), false);
+  TESTING_OUTPUT_ASSERT_ERRORS_END();
+  CHECK_BOOL(first->GetMTime() == before, true);
+  first->SetFocus("a\\,b,c");
+  CHECK_BOOL(first->GetFocus() == std::vector<std::string>({"a,b", "c"}), true);
+  CHECK_BOOL(first->SetFlag("clip", ""), true);
   CHECK_INT(static_cast<int>(first->GetFlags().count("clip")), 0);
   CHECK_EXIT_SUCCESS(testWithheld());
   CHECK_EXIT_SUCCESS(testUnknown());

@@ -99,6 +99,7 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   CHECK_BOOL(contents.segmentationKey != before, true);
   const auto named = vtkSlicerFenestraLogic::GetSegments(settings);
   CHECK_INT(static_cast<int>(named.size()), 2); // includes the empty segment
+  CHECK_BOOL(vtkSlicerFenestraLogic::GetSegmentIDs(settings) == ids, true);
   for (const SlicerExport::Segment& one : {contents.segmentation.segments[0], named[0]}) {
     CHECK_STD_STRING(one.id, ids[0]);
     CHECK_STD_STRING(one.tags, "TerminologyEntry:a~SCT^1^b|");
@@ -175,11 +176,16 @@ int vtkSlicerFenestraLogicTest1(int, char*[]) {
   CHECK_EXIT_SUCCESS(testCamera(scene, logic, settings));
   CHECK_EXIT_SUCCESS(testPlane(scene));
   CHECK_EXIT_SUCCESS(testTurntable(logic, settings));
-  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"focus", "a"}}), true);
-  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"focus", "a"}, {"clip", "ghost"}}), true);
-  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"focus", "a"}, {"clip", "plane"}}), false);
-  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"preset", "liver"}}), true);
-  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({{"focus", "a"}, {"clip", "none"}}), false);
-  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface({}), false);
+  const auto hasSurface = [settings](const std::map<std::string, std::string>& flags) {
+    settings->SetFlags(flags);
+    return vtkSlicerFenestraLogic::HasSurface(settings);
+  };
+  CHECK_BOOL(hasSurface({{"focus", "a"}}), true);
+  CHECK_BOOL(hasSurface({{"focus", "a"}, {"clip", "ghost"}}), true);
+  CHECK_BOOL(hasSurface({{"focus", "a"}, {"clip", "plane"}}), false);
+  CHECK_BOOL(hasSurface({{"preset", "liver"}}), true);
+  CHECK_BOOL(hasSurface({{"focus", "a"}, {"clip", "none"}}), false);
+  CHECK_BOOL(hasSurface({}), false);
+  CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface(nullptr), false);
   return EXIT_SUCCESS;
 }

@@ -1,23 +1,125 @@
-"""Runs the tutorial's Python lines."""
+"""The module as scripts use it, with a sample knee: the tutorial's lines, wrong arguments, and the view of an image."""
 
 import pathlib
 import re
 import tempfile
 import unittest
 
+import qt
 import slicer
+import vtk
+
+
+def process_events(seconds=0.5):
+    """Longer than the timers of Slicer's new views."""
+    timer, loop = qt.QTimer(), qt.QEventLoop()
+    timer.singleShot(int(1000 * seconds), loop.quit)
+    loop.exec_()
 
 
 class FenestraScriptTest(unittest.TestCase):
-    def test_tutorial(self):
-        self.assertEqual(slicer.modules.fenestra.logic().GetClassName(), "vtkSlicerFenestraLogic")
+    @classmethod
+    def setUpClass(cls):
+        slicer.mrmlScene.Clear()
+        cls.folder = tempfile.TemporaryDirectory()
+        command = slicer.modules.fenestracommand.path
+        slicer.util.launchConsoleProcess([command, "phantom", "knee", "--output", cls.folder.name]).wait()
+        slicer.util.loadScene(f"{cls.folder.name}/knee.mrml")
+        cls.logic = slicer.modules.fenestra.logic()
+        for name, value in {"samples": "2", "size": "96x64"}.items():
+            assert cls.logic.GetSettings().SetFlag(name, value)
         tutorial = pathlib.Path(__file__).parents[2] / "Tutorial.md"
         lines = re.search(r"```python\n(.*?)```", tutorial.read_text(), re.DOTALL).group(1)
-        with tempfile.TemporaryDirectory() as folder:
-            command = pathlib.Path(slicer.modules.fenestracommand.path)
-            slicer.util.launchConsoleProcess([str(command), "phantom", "knee", "--output", folder]).wait()
-            slicer.util.loadScene(f"{folder}/knee.mrml")
-            slicer.modules.fenestra.logic().GetSettings().SetFlag("samples", "4")
-            names = {"slicer": slicer, "getNode": slicer.util.getNode}
-            exec(lines, names)
-            self.assertIsNotNone(names["render"].GetNodeReference("picture"))
+        names = {"slicer": slicer, "getNode": slicer.util.getNode}
+        exec(lines, names)
+        cls.settings, cls.render = names["settings"], names["render"]
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def errors(self, call):
+        """Result of a call, and how many errors it logged."""
+        messages = []
+        observed = [(node, node.AddObserver("ErrorEvent", lambda *_: messages.append(1)))
+                    for node in (self.logic, self.settings)]
+        result = call()
+        for node, tag in observed:
+            node.RemoveObserver(tag)
+        return result, len(messages)
+
+    def test_tutorial(self):
+        self.assertEqual(self.logic.GetClassName(), "vtkSlicerFenestraLogic")
+        self.assertIsNotNone(self.render.GetNodeReference("picture"))
+        self.assertEqual(self.render.GetRenderState(), self.render.Ended)
+        self.assertEqual((self.render.GetProblem(), self.logic.IsRendering(self.render)), ("", False))
+
+    def test_focus_is_a_text_or_a_list(self):
+        for focus, expected in (("FemoralCartilage", ["FemoralCartilage"]), ("Femur,Tibia", ["Femur", "Tibia"]),
+                                (["Femur"], ["Femur"]), ((), [])):
+            self.settings.SetFocus(focus)
+            self.assertEqual(list(self.settings.GetFocus()), expected)
+        self.settings.SetFocus("FemoralCartilage")
+        self.assertTrue(self.logic.HasSurface(self.settings))
+        self.assertIn("Segment_1", self.logic.GetSegmentIDs(self.settings))
+        self.assertIn("focus", self.settings.GetActiveFlagNames())
+
+    def test_wrong_flags_are_errors(self):
+        for name, value in (("nonsense", "1"), ("samples", "many"), ("clip", "Surface")):
+            before = self.settings.GetFlag(name)
+            self.assertEqual(self.errors(lambda: self.settings.SetFlag(name, value)), (False, 1))
+            self.assertEqual(self.settings.GetFlag(name), before)
+
+    def test_no_method_throws(self):
+        file = f"{self.folder.name}/file"
+        pathlib.Path(file).touch()
+        self.assertEqual(self.errors(lambda: self.logic.WriteScene(self.settings, f"{file}/folder")), ("", 1))
+        self.assertEqual(list(self.logic.GetFrameFiles("/nonexistent/" + 300 * "x")), [])
+        scene = self.logic.WriteScene(self.settings, f"{self.folder.name}/new/folder")
+        self.assertTrue(pathlib.Path(scene).exists())
+        for missing in ("ReadResult", "Snapshot", "AddResult"):
+            self.assertFalse(hasattr(self.logic, missing), missing)
+
+    def test_failed_render_leaves_no_node(self):
+        nodes = slicer.mrmlScene.GetNumberOfNodes()
+        ended = []
+
+        @vtk.calldata_type(vtk.VTK_OBJECT)
+        def observe(logic, event, render):
+            render.AddObserver(render.RenderEndEvent, lambda node, _: ended.append(node.GetProblem()))
+
+        tag = self.logic.AddObserver(self.logic.RenderRequestedEvent, observe, 1.0)  # before the session
+        self.settings.SetFocus(["gone"])
+        self.assertIsNone(self.logic.Render(self.settings, True))
+        self.logic.RemoveObserver(tag)
+        self.settings.SetFocus(["FemoralCartilage"])
+        self.assertEqual(len(ended), 1)
+        self.assertIn("gone", ended[0])
+        self.assertEqual(slicer.mrmlScene.GetNumberOfNodes(), nodes)
+
+    def test_shown_image_is_complete(self):
+        """One call shows the image's plane, completely and beside a 3D view of the same width."""
+        slicer.app.layoutManager().setLayout(slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpView)
+        self.logic.ShowResult(self.render)
+        picture = self.render.GetNodeReference("picture")
+        for _ in range(2):
+            view = slicer.mrmlScene.GetSingletonNode("Fenestra", "vtkMRMLSliceNode")
+            to_view = vtk.vtkMatrix4x4()
+            vtk.vtkMatrix4x4.Invert(view.GetXYToRAS(), to_view)
+            to_ras = vtk.vtkMatrix4x4()
+            picture.GetIJKToRASMatrix(to_ras)
+            size = picture.GetImageData().GetDimensions()
+            x0, y0, z0, _ = to_view.MultiplyPoint(to_ras.MultiplyPoint((0, 0, 0, 1)))
+            x1, y1, z1, _ = to_view.MultiplyPoint(to_ras.MultiplyPoint((size[0] - 1, size[1] - 1, 0, 1)))
+            width, height, _ = view.GetDimensions()
+            self.assertAlmostEqual(z0, 0.0, 3)
+            self.assertAlmostEqual(z1, 0.0, 3)
+            self.assertTrue(0 <= x0 < x1 <= width and 0 <= y1 < y0 <= height, (x0, x1, y0, y1, width, height))
+            self.assertGreater(max((x1 - x0) / width, (y0 - y1) / height), 0.8)
+            process_events()
+        self.assertEqual(self.logic.GetShownRender(), self.render)
+        widgets = slicer.app.layoutManager()
+        image, anatomy = widgets.sliceWidget("Fenestra").width, widgets.threeDWidget(0).width
+        self.assertLess(abs(image - anatomy), 0.05 * image, (image, anatomy))
+        self.logic.ShowLayoutBefore()
+        self.assertEqual(widgets.layout, slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpView)

@@ -17,7 +17,7 @@ public:
   explicit qSlicerFenestraTourModule(QObject* parent = nullptr) : Superclass(parent) {}
 
   qSlicerGetTitleMacro(QTMODULE_TITLE);
-  QString formatHelp() const override { return "Performs the tutorial automatically."; }
+  QString helpText() const override { return "Performs the tutorial automatically."; }
   QString acknowledgementText() const override { return "For tests and screenshots."; }
   bool isHidden() const override { return true; }
   QStringList dependencies() const override { return {"Fenestra"}; }

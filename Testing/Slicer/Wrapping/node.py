@@ -1,4 +1,11 @@
-"""Uses the wrapped node from Python: flags, XML, copies, and invalid arguments such as None."""
+"""Uses the wrapped node from Python: flags, XML, copies, and invalid arguments such as None.
+
+Arguments: the wrapped headers, whose output of the wrapper is in the current folder.
+"""
+
+import pathlib
+import re
+import sys
 
 import vtkmodules.vtkCommonCore
 from FenestraPython import vtkMRMLFenestraPictureDisplayNode as PictureDisplay
@@ -18,7 +25,19 @@ def attempt(call, *arguments):
 node = Node()
 node.SetName("render")
 node.SetFlag("samples", "64")
-node.SetFlag("nonsense", "1")
+messages = []
+node.AddObserver("ErrorEvent", lambda *_: messages.append("error"))
+assert node.SetFlag("denoise", "off") and node.SetFlag("denoise", "") and not messages
+assert not node.SetFlag("nonsense", "1") and len(messages) == 1, "an unknown option is an error"
+assert not node.SetFlag("samples", "many") and len(messages) == 2, "so is a wrong value"
+node.SetFocus("FemoralCartilage")
+assert list(node.GetFocus()) == ["FemoralCartilage"], "a text is not a list of letters"
+node.SetFocus("a\\,b,c")
+assert list(node.GetFocus()) == ["a,b", "c"], "as on the command line"
+for empty in ("", [], None):
+    node.SetFocus(empty)
+    assert list(node.GetFocus()) == []
+assert list(node.GetActiveFlagNames()) == ["samples"]
 node.SetFocus(["liver", "a,b"])
 assert node.GetFlag("samples") == "64" and node.GetFlag("nonsense") == ""
 assert list(node.GetFocus()) == ["liver", "a,b"]
@@ -36,7 +55,7 @@ assert node.GetNodeReferenceID("volume") == "vtkMRMLScalarVolumeNode1"
 read = Node()
 read.ReadAttributes(["name", "other", "clip", "surface", "transfer", "/etc/passwd", "mood", "<deep>"])
 assert read.GetFlag("clip") == "surface" and read.GetFlag("transfer") == "", "file names are withheld"
-assert read.WithholdsFiles()
+assert read.WithholdsFiles() and list(read.GetWithheldFlagNames()) == ["transfer"]
 written = read.ToXml()
 assert all(part in written for part in ('clip="surface"', 'transfer="/etc/passwd"', 'mood="&lt;deep>"'))
 
@@ -60,6 +79,17 @@ for name in own:
     for arguments in ((), (None,), (None, None), ("x",), ("x", None), (node, node), ([],), ([None],)):
         attempt(getattr(node, name), *arguments)
 print("node from Python: ok")
+
+# Python has every method of the headers, except those that are excluded on purpose.
+for header in map(pathlib.Path, sys.argv[1:]):
+    public = header.read_text().split("\nprotected:")[0]
+    public = re.sub(r"//.*", "", public)
+    public = re.sub(r"#ifndef __VTK_WRAP__.*?#endif|\S[^;]* override\b", "", public, flags=re.DOTALL)
+    declared = set(re.findall(r" [A-Z]\w*(?=\()", public)) - {" New"}
+    wrapper = pathlib.Path(f"{header.stem}Python.cxx").read_text()
+    missing = [name for name in declared if f'{{"{name.strip()}", Py{header.stem}_' not in wrapper]
+    assert not missing, f"{header.stem}: not wrapped: {missing}"
+    print(f"{header.stem}: {len(declared)} methods are wrapped")
 
 pixels = [(200, 100, 50, 255), (200, 100, 50, 128), (0, 0, 0, 0)]
 picture = vtkImageData()

@@ -17,6 +17,7 @@ protected:
   virtual void SetMRMLSceneInternal(vtkMRMLScene*) {}
   virtual void OnMRMLSceneStartImport() {}
   virtual void OnMRMLSceneNodeRemoved(vtkMRMLNode*) {}
+  virtual void OnMRMLNodeModified(vtkMRMLNode*) {}
 };
 
 #endif

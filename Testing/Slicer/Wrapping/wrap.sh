@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Wraps the module's classes for Python as Slicer does: VTK's wrapper reads every header of Logic and MRML, its
-# output is compiled, and a script uses the node. Stand-ins in this folder replace Slicer's classes. If Debian's VTK
-# packages are not installed, they are unpacked into FOLDER.
+# Wraps the module's classes for Python as Slicer does: VTK's wrapper reads the header of every source in the lists of
+# Logic and MRML (headers.cmake), its output is compiled, and a script uses the node. Stand-ins in this folder replace
+# Slicer's classes. If Debian's VTK packages are not installed, they are unpacked into FOLDER.
 # usage: wrap.sh FOLDER. Exit status 77: the wrapper is neither installed nor can be downloaded.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -37,7 +37,9 @@ for export in vtkSlicerFenestraModuleLogicExport vtkSlicerFenestraModuleMRMLExpo
 done
 includes=(-I. "${folders[@]/#/-I}" "-I$root/usr/include/vtk-9.1")
 
-headers=("$here"/vtk*.h "$module"/Logic/vtk*.h "$module"/MRML/vtk*.h)
+wrapped=$(cmake -D "MODULE=$module" -P "$here/headers.cmake")
+headers=("$here"/vtk*.h)
+while read -r header; do headers+=("$header"); done <<<"$wrapped"
 printf '%s;FenestraPython\n' "${headers[@]}" >headers.txt
 "$root/usr/bin/vtkWrapHierarchy-9.1" "${includes[@]}" -o ours.txt headers.txt
 cp ours.txt FenestraPython-hierarchy.txt
@@ -67,4 +69,4 @@ done
 g++ -shared "${objects[@]}" -o FenestraPython.so "-L$libraries" -lvtkCommonCore-9.1 \
   -lvtkCommonDataModel-9.1 -lvtkCommonExecutionModel-9.1 -lvtkImagingCore-9.1 -lvtkImagingColor-9.1 \
   -lvtkWrappingPythonCore3.11-9.1 "-Wl,-rpath-link,$libraries"
-PYTHONPATH=.:$root/usr/lib/python3/dist-packages /usr/bin/python3.11 "$here/node.py"
+PYTHONPATH=.:$root/usr/lib/python3/dist-packages /usr/bin/python3.11 "$here/node.py" $wrapped
