@@ -19,6 +19,14 @@ std::vector<std::string> getNames(const std::map<std::string, std::string>& valu
   return names;
 }
 
+std::vector<std::string> getFlagNames(bool turntableOnly) {
+  std::vector<std::string> names;
+  for (const SlicerExport::Flag& flag : SlicerExport::flags())
+    if (flag.turntableOnly || !turntableOnly)
+      names.push_back(flag.name);
+  return names;
+}
+
 /// Attributes of vtkMRMLNode.
 const std::set<std::string> baseAttributes = {
     "attributes", "description", "hideFromEditors", "id",           "name",       "references",
@@ -26,16 +34,6 @@ const std::set<std::string> baseAttributes = {
 } // namespace
 
 vtkMRMLNodeNewMacro(vtkMRMLFenestraRenderNode);
-
-const char* const vtkMRMLFenestraRenderNode::VolumeRole = "volume";
-const char* const vtkMRMLFenestraRenderNode::SegmentationRole = "segmentation";
-const char* const vtkMRMLFenestraRenderNode::ViewRole = "view";
-const char* const vtkMRMLFenestraRenderNode::PlaneRole = "plane";
-const char* const vtkMRMLFenestraRenderNode::PictureRole = "picture";
-const char* const vtkMRMLFenestraRenderNode::RadianceRole = "radiance";
-const char* const vtkMRMLFenestraRenderNode::DepthRole = "depth";
-const char* const vtkMRMLFenestraRenderNode::SurfaceRole = "surface";
-const char* const vtkMRMLFenestraRenderNode::MeasuresAttribute = "Fenestra.Measures";
 
 vtkMRMLFenestraRenderNode::vtkMRMLFenestraRenderNode() {
   for (const char* role : {VolumeRole, SegmentationRole, ViewRole, PlaneRole, PictureRole,
@@ -46,23 +44,12 @@ vtkMRMLFenestraRenderNode::vtkMRMLFenestraRenderNode() {
 vtkMRMLFenestraRenderNode::~vtkMRMLFenestraRenderNode() = default;
 
 const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetFlagNames() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const SlicerExport::Flag& flag : SlicerExport::flags())
-      all.push_back(flag.name);
-    return all;
-  }();
+  static const std::vector<std::string> names = getFlagNames(false);
   return names;
 }
 
 const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetTurntableFlagNames() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const SlicerExport::Flag& flag : SlicerExport::flags())
-      if (flag.turntableOnly)
-        all.push_back(flag.name);
-    return all;
-  }();
+  static const std::vector<std::string> names = getFlagNames(true);
   return names;
 }
 

@@ -96,17 +96,17 @@ public:
   static const char* GetDepthNodeReferenceRole() { return DepthRole; }
   static const char* GetSurfaceNodeReferenceRole() { return SurfaceRole; }
 
-  static const char* const VolumeRole;
-  static const char* const SegmentationRole;
-  static const char* const ViewRole;
-  static const char* const PlaneRole;
-  static const char* const PictureRole;
-  static const char* const RadianceRole;
-  static const char* const DepthRole;
-  static const char* const SurfaceRole;
+  static constexpr const char* VolumeRole = "volume";
+  static constexpr const char* SegmentationRole = "segmentation";
+  static constexpr const char* ViewRole = "view";
+  static constexpr const char* PlaneRole = "plane";
+  static constexpr const char* PictureRole = "picture";
+  static constexpr const char* RadianceRole = "radiance";
+  static constexpr const char* DepthRole = "depth";
+  static constexpr const char* SurfaceRole = "surface";
 
   /// Attribute of a result: measures selected from the renderer's statistics, a JSON object.
-  static const char* const MeasuresAttribute;
+  static constexpr const char* MeasuresAttribute = "Fenestra.Measures";
 
 #ifndef __VTK_WRAP__ // Python has no std::map
   /// Replaces all flags. Leaves out unknown names and wrong values.

@@ -209,21 +209,17 @@ int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   CHECK_NOT_NULL(render);
   CHECK_BOOL(logic->IsRendering(render), true);
   CHECK_INT(render->GetRenderState(), Node::Queued);
-  int progressEvents = 0, endEvents = 0;
+  std::map<unsigned long, int> events; // counts
   vtkNew<vtkCallbackCommand> count;
-  count->SetCallback(
-      [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
-  count->SetClientData(&progressEvents);
-  render->AddObserver(Node::RenderProgressEvent, count);
-  vtkNew<vtkCallbackCommand> end;
-  end->SetCallback(
-      [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
-  end->SetClientData(&endEvents);
-  render->AddObserver(Node::RenderEndEvent, end);
+  count->SetCallback([](vtkObject*, unsigned long event, void* data, void*) {
+    ++(*static_cast<std::map<unsigned long, int>*>(data))[event];
+  });
+  count->SetClientData(&events);
+  render->AddObserver(vtkCommand::AnyEvent, count);
   CHECK_BOOL(waitFor([&] { return !render->IsRendering(); }), true);
   CHECK_INT(render->GetRenderState(), Node::Ended);
-  CHECK_BOOL(progressEvents > 0, true);
-  CHECK_INT(endEvents, 1);
+  CHECK_BOOL(events[Node::RenderProgressEvent] > 0, true);
+  CHECK_INT(events[Node::RenderEndEvent], 1);
   CHECK_STD_STRING(render->GetProblem(), "");
   Node* finished = logic->Render(settings, true);
   CHECK_NOT_NULL(finished);
