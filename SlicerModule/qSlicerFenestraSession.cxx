@@ -68,6 +68,7 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
   qvtkConnect(m_logic, vtkSlicerFenestraLogic::RenderWaitEvent, this,
               SLOT(onRenderWait(vtkObject*, vtkObject*)));
   qvtkConnect(m_logic, vtkSlicerFenestraLogic::StopRequestedEvent, this, SLOT(stop()));
+  qvtkConnect(m_logic, vtkSlicerFenestraLogic::ViewChangedEvent, this, SLOT(onViewChanged()));
   constexpr int sampleInterval = 500; // ms
   m_sampleTimer.setInterval(sampleInterval);
   connect(&m_sampleTimer, &QTimer::timeout, this,
@@ -224,6 +225,11 @@ void qSlicerFenestraSession::onRenderWait(vtkObject*, vtkObject* render) {
   loop.exec(QEventLoop::ExcludeUserInputEvents);
 }
 
+/// Waits until the view has changed completely.
+void qSlicerFenestraSession::onViewChanged() {
+  runInMainThread([this] { m_logic->AlignView(); });
+}
+
 /// Passes all flags on the command line, which the renderer trusts more than a scene.
 QStringList qSlicerFenestraSession::makeArguments(Node* render, const QString& scene,
                                                   bool withSurface) const {
@@ -319,7 +325,7 @@ void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) 
   const Render render = m_renders.take(id);
   vtkSmartPointer<Node> node = render.node.GetPointer();
   const bool hasResult = node && node->GetScene() && node->GetNodeReference(Node::PictureRole);
-  if (!hasResult || !canResume(node)) // resuming needs these files
+  if (!hasResult || !m_results.lacksFrames(node)) // resuming needs these files
     for (const char* file : {"scene.mrml", "volume.nrrd", "segmentation.seg.nrrd", "roi.mrk.json"})
       if (!render.folder.isEmpty())
         QFile::remove(render.folder + "/" + file);

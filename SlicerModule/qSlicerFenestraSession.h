@@ -98,6 +98,7 @@ signals:
 private slots:
   void onRenderRequested(vtkObject* logic, vtkObject* render);
   void onRenderWait(vtkObject* logic, vtkObject* render);
+  void onViewChanged();
 
 private:
   static constexpr const char* folderPrefix = "fenestra-slicer-";

@@ -53,8 +53,9 @@ public:
 
   /// Requests to the renderer, which observes them: the module's session. The call data of the
   /// first two is the render's node. RenderRequestedEvent: set the node's state, render, and call
-  /// its EndRender. RenderWaitEvent: return when the render has ended.
-  enum { RenderRequestedEvent = 62180, RenderWaitEvent, StopRequestedEvent };
+  /// its EndRender. RenderWaitEvent: return when the render has ended. ViewChangedEvent: call
+  /// AlignView later.
+  enum { RenderRequestedEvent = 62180, RenderWaitEvent, StopRequestedEvent, ViewChangedEvent };
   /// Renders the settings in the background and returns the render's node, which reports progress
   /// and end as events (RenderProgressEvent, RenderEndEvent). Null: failed, the log says why.
   /// `wait`: returns after the end; then null also means that there is no image.
@@ -107,6 +108,8 @@ public:
   void ShowNewestVolume();
   /// Shows the render's image beside a 3D view, in the module's own layout.
   void ShowResult(vtkMRMLFenestraRenderNode* render);
+  /// Fits the shown image to its view, and returns to its plane if that was left.
+  void AlignView();
   /// Restores the layout that the module's own layout replaced.
   void ShowLayoutBefore();
   /// Render whose image the module's layout shows; null: none.
@@ -127,13 +130,13 @@ protected:
   /// Registers the module's layout, which the scene may have been saved with.
   void OnMRMLSceneStartImport() override;
   void OnMRMLSceneNodeRemoved(vtkMRMLNode* node) override;
-  /// Fits the image to its view, whose size changes after the layout has created it.
+  /// A view that the layout has just created changes its size, and sets its plane to its slider's
+  /// first value.
   void OnMRMLNodeModified(vtkMRMLNode* node) override;
 
 private:
   vtkMRMLFenestraRenderNode* Start(vtkMRMLFenestraRenderNode* settings, bool turntable, bool wait);
   vtkMRMLSliceLogic* GetPictureSliceLogic();
-  void FitPicture(vtkMRMLSliceLogic* sliceLogic);
   SlicerExport::Matrix MoveOutsideVolume(vtkMRMLFenestraRenderNode* render,
                                          const SlicerExport::Matrix& ijkToRas);
   void MoveToRenderFolder(vtkMRMLFenestraRenderNode* render, vtkMRMLNode* result);
@@ -145,6 +148,7 @@ private:
 
   int PreviousLayout = 3;     ///< vtkMRMLLayoutNode::SlicerLayoutFourUpView
   int FittedSize[2] = {0, 0}; ///< of the image's view, pixels
+  int ShownFrame = 0;
 };
 
 #endif

@@ -118,6 +118,24 @@ void AlignSliceWithFrame(vtkMRMLVolumeNode* picture, int frame, vtkMRMLSliceNode
   slice->UpdateMatrices();
 }
 
+/// Frame in the plane of the view; -1: none.
+int FindFrame(vtkMRMLVolumeNode* picture, vtkMRMLSliceNode* slice) {
+  vtkNew<vtkMatrix4x4> rasToIjk;
+  picture->GetRASToIJKMatrix(rasToIjk);
+  vtkMatrix4x4* plane = slice->GetSliceToRAS();
+  const double origin[4] = {plane->GetElement(0, 3), plane->GetElement(1, 3),
+                            plane->GetElement(2, 3), 1.0};
+  double ijk[4];
+  rasToIjk->MultiplyPoint(origin, ijk);
+  const long frame = std::lround(ijk[2]);
+  return frame >= 0 && frame < picture->GetImageData()->GetDimensions()[2] ? static_cast<int>(frame)
+                                                                           : -1;
+}
+
+bool HasSize(vtkMRMLSliceNode* slice, const int* size) {
+  return std::equal(size, size + 2, slice->GetDimensions());
+}
+
 vtkMRMLLayoutNode* FindLayoutNode(vtkMRMLScene* scene) {
   return !scene ? nullptr
                 : vtkMRMLLayoutNode::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLLayoutNode"));
@@ -357,29 +375,39 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
     return;
   vtkMRMLSliceNode* slice = sliceLogic->GetSliceNode();
   vtkMRMLSliceCompositeNode* composite = sliceLogic->GetSliceCompositeNode();
-  // The view moves the plane into the range of its slider, which must know the image before.
-  const int wasModifying = slice->StartModify();
-  AlignSliceWithFrame(picture, 0, slice);
   composite->SetBackgroundVolumeID(picture->GetID());
   composite->SetForegroundVolumeID(nullptr);
   composite->SetLabelVolumeID(nullptr);
-  slice->EndModify(wasModifying);
-  this->FitPicture(sliceLogic);
+  this->ShownFrame = this->FittedSize[0] = 0;
+  AlignSliceWithFrame(picture, 0, slice);
+  this->AlignView();
   vtkUnObserveMRMLNodeMacro(slice);
   vtkObserveMRMLNodeMacro(slice);
 }
 
-void vtkSlicerFenestraLogic::FitPicture(vtkMRMLSliceLogic* sliceLogic) {
-  std::copy_n(sliceLogic->GetSliceNode()->GetDimensions(), 2, this->FittedSize);
-  sliceLogic->FitSliceToBackground(this->FittedSize[0], this->FittedSize[1]);
+void vtkSlicerFenestraLogic::AlignView() {
+  Node* render = this->GetShownRender();
+  if (GetNumberOfFrames(render) == 0)
+    return;
+  vtkMRMLSliceLogic* sliceLogic = this->GetPictureSliceLogic();
+  vtkMRMLSliceNode* slice = sliceLogic->GetSliceNode();
+  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
+  const int frame = FindFrame(picture, slice);
+  if (!HasSize(slice, this->FittedSize)) {
+    std::copy_n(slice->GetDimensions(), 2, this->FittedSize);
+    sliceLogic->FitSliceToBackground(this->FittedSize[0], this->FittedSize[1]);
+  }
+  AlignSliceWithFrame(picture, frame < 0 ? this->ShownFrame : frame, slice);
 }
 
 void vtkSlicerFenestraLogic::OnMRMLNodeModified(vtkMRMLNode* node) {
   auto* slice = vtkMRMLSliceNode::SafeDownCast(node);
-  if (!slice || std::equal(this->FittedSize, this->FittedSize + 2, slice->GetDimensions()))
+  Node* render = slice ? this->GetShownRender() : nullptr;
+  if (GetNumberOfFrames(render) == 0)
     return;
-  if (this->GetShownRender())
-    this->FitPicture(this->GetPictureSliceLogic());
+  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
+  if (!HasSize(slice, this->FittedSize) || FindFrame(picture, slice) < 0)
+    this->InvokeEvent(ViewChangedEvent);
 }
 
 Node* vtkSlicerFenestraLogic::GetShownRender() {
@@ -408,6 +436,7 @@ void vtkSlicerFenestraLogic::ShowFrame(Node* render, int frame) {
     this->ShowResult(render);
     sliceLogic = this->GetPictureSliceLogic(); // which the layout may have created just now
   }
+  this->ShownFrame = frame;
   if (sliceLogic)
     AlignSliceWithFrame(picture, frame, sliceLogic->GetSliceNode());
 }

@@ -10,11 +10,13 @@ import slicer
 import vtk
 
 
-def process_events(seconds=0.5):
-    """Longer than the timers of Slicer's new views."""
-    timer, loop = qt.QTimer(), qt.QEventLoop()
-    timer.singleShot(int(1000 * seconds), loop.quit)
+def process_events():
+    """Waits longer than the timers of Slicer's new views, then for the events that they caused."""
+    loop = qt.QEventLoop()
+    qt.QTimer.singleShot(500, loop.quit)
     loop.exec_()
+    for _ in range(5):
+        slicer.app.processEvents()
 
 
 class FenestraScriptTest(unittest.TestCase):
@@ -61,7 +63,7 @@ class FenestraScriptTest(unittest.TestCase):
             self.assertEqual(list(self.settings.GetFocus()), expected)
         self.settings.SetFocus("FemoralCartilage")
         self.assertTrue(self.logic.HasSurface(self.settings))
-        self.assertIn("Segment_1", self.logic.GetSegmentIDs(self.settings))
+        self.assertIn("FemoralCartilage", self.logic.GetSegmentIDs(self.settings))
         self.assertIn("focus", self.settings.GetActiveFlagNames())
 
     def test_wrong_flags_are_errors(self):
