@@ -219,6 +219,7 @@ int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   CHECK_INT(render->GetRenderState(), Node::Ended);
   CHECK_BOOL(events[Node::RenderProgressEvent] > 0, true);
   CHECK_INT(events[Node::RenderEndEvent], 1);
+  render->RemoveObserver(count);
   CHECK_STD_STRING(render->GetProblem(), "");
   Node* finished = logic->Render(settings, true);
   CHECK_NOT_NULL(finished);
