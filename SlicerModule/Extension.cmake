@@ -17,25 +17,22 @@ string(TOUPPER ${MODULE_NAME} MODULE_NAME_UPPER)
 add_subdirectory(MRML)
 add_subdirectory(Logic)
 
-set(module_classes qSlicerFenestraClipping qSlicerFenestraLook qSlicerFenestraMargins qSlicerFenestraMaterials
-  qSlicerFenestraModule qSlicerFenestraModuleWidget qSlicerFenestraPanel qSlicerFenestraPlayer
-  qSlicerFenestraSession qSlicerFenestraSettings)
-set(module_sources qSlicerFenestraSessionPreview.cxx qSlicerFenestraLights.cxx qSlicerFenestraLights.h qSlicerFenestraMeasures.cxx
-  qSlicerFenestraMeasures.h qSlicerFenestraResults.cxx qSlicerFenestraResults.h
-  qSlicerFenestraWidgets.cxx qSlicerFenestraWidgets.h)
-set(module_moc)
-foreach(class ${module_classes})
-  list(APPEND module_sources ${class}.cxx ${class}.h)
-  list(APPEND module_moc ${class}.h)
-endforeach()
+include(Widgets/Widgets.cmake)
 slicerMacroBuildLoadableModule(
   NAME ${MODULE_NAME}
   TITLE ${MODULE_TITLE}
   EXPORT_DIRECTIVE "Q_SLICER_QTMODULES_${MODULE_NAME_UPPER}_EXPORT"
   INCLUDE_DIRECTORIES ${CMAKE_CURRENT_SOURCE_DIR}/Logic ${CMAKE_CURRENT_BINARY_DIR}/Logic
                       ${CMAKE_CURRENT_SOURCE_DIR}/MRML ${CMAKE_CURRENT_BINARY_DIR}/MRML
-  SRCS ${module_sources}
-  MOC_SRCS ${module_moc}
+                      ${CMAKE_CURRENT_SOURCE_DIR}/Widgets
+  SRCS qSlicerFenestraModule.cxx qSlicerFenestraModule.h
+       qSlicerFenestraModuleWidget.cxx qSlicerFenestraModuleWidget.h
+       qSlicerFenestraResults.cxx qSlicerFenestraResults.h
+       qSlicerFenestraSession.cxx qSlicerFenestraSession.h qSlicerFenestraSessionPreview.cxx
+       ${widget_sources}
+  MOC_SRCS qSlicerFenestraModule.h qSlicerFenestraModuleWidget.h qSlicerFenestraSession.h
+           ${widget_moc_sources}
+  UI_SRCS Resources/UI/qSlicerFenestraModuleWidget.ui ${widget_ui_sources}
   TARGET_LIBRARIES vtkSlicer${MODULE_NAME}ModuleLogic FenestraProcess FenestraScene
   RESOURCES Resources/qSlicerFenestraModule.qrc
   WITH_GENERIC_TESTS)

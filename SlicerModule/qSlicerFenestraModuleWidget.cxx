@@ -1,16 +1,13 @@
 #include "qSlicerFenestraModuleWidget.h"
 
-#include "qFenestraCopies.h"
-#include "qSlicerFenestraMaterials.h"
 #include "qSlicerFenestraMeasures.h"
 #include "qSlicerFenestraModule.h"
-#include "qSlicerFenestraPanel.h"
-#include "qSlicerFenestraPlayer.h"
-#include "qSlicerFenestraSettings.h"
+#include "qSlicerFenestraSaving.h"
+#include "qSlicerFenestraWidgets.h"
+#include "ui_qSlicerFenestraModuleWidget.h"
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraLogic.h"
 
-#include <qMRMLNodeComboBox.h>
 #include <qMRMLThreeDWidget.h>
 #include <qSlicerApplication.h>
 #include <qSlicerCoreIOManager.h>
@@ -18,17 +15,10 @@
 
 #include <vtkMRMLScene.h>
 
-#include <QCheckBox>
-#include <QFileDialog>
 #include <QJsonDocument>
-#include <QLabel>
-#include <QMessageBox>
-#include <QProgressBar>
-#include <QPushButton>
+#include <QPointer>
 #include <QSignalBlocker>
 #include <QTimer>
-#include <QToolButton>
-#include <QVBoxLayout>
 
 #include <cmath>
 
@@ -51,13 +41,39 @@ std::string findViewSize(double side) {
 
 } // namespace
 
-qSlicerFenestraModuleWidget::qSlicerFenestraModuleWidget(QWidget* parent) : Superclass(parent) {}
+class qSlicerFenestraModuleWidgetPrivate : public Ui_qSlicerFenestraModuleWidget {
+  Q_DECLARE_TR_FUNCTIONS(qSlicerFenestraModuleWidget)
+
+public:
+  Node* chosenRender() const { return Node::SafeDownCast(RendersBox->currentNode()); }
+  bool hasVolume() const;
+  void setStatus(const QString& message, const QString& details = {});
+  void clearStatus();
+  void setLoading(bool isLoading);
+  void showPreviewImage(const QImage& image, const qFenestraPreviewImage& info);
+  void showMeasures(Node* render);
+  QString toUserText(Node* render, qFenestraOutcome::Kind kind) const;
+
+  QPointer<qSlicerFenestraSession> session; ///< owned by the module, which may end earlier
+  bool sceneIsNew = false;                  ///< scene closed or loaded, but not shown yet
+  QString samplesAndNoise;                  ///< samples and noise of the current render, as text
+  QElapsedTimer progressAge;                ///< time since progress was last shown
+};
+
+qSlicerFenestraModuleWidget::qSlicerFenestraModuleWidget(QWidget* parent)
+    : Superclass(parent), d_ptr(new qSlicerFenestraModuleWidgetPrivate) {}
 
 qSlicerFenestraModuleWidget::~qSlicerFenestraModuleWidget() {
-  if (m_session) { // the module owns it and keeps it running
-    m_session->preview(nullptr);
-    m_session->disconnect(this);
+  Q_D(qSlicerFenestraModuleWidget);
+  if (d->session) { // the module owns it and keeps it running
+    d->session->preview(nullptr);
+    d->session->disconnect(this);
   }
+}
+
+qSlicerFenestraSession* qSlicerFenestraModuleWidget::session() const {
+  Q_D(const qSlicerFenestraModuleWidget);
+  return d->session;
 }
 
 vtkSlicerFenestraLogic* qSlicerFenestraModuleWidget::fenestraLogic() const {
@@ -65,75 +81,79 @@ vtkSlicerFenestraLogic* qSlicerFenestraModuleWidget::fenestraLogic() const {
 }
 
 void qSlicerFenestraModuleWidget::setup() {
+  Q_D(qSlicerFenestraModuleWidget);
+  d->setupUi(this);
+  qSlicerFenestraWidgets::nameParts(this);
   Superclass::setup();
-  auto* layout = new QVBoxLayout(this);
-  m_panel = new qSlicerFenestraPanel;
-  layout->addWidget(m_panel);
-  m_settings = new qSlicerFenestraSettings(m_panel, fenestraLogic(), this);
-  m_session = dynamic_cast<qSlicerFenestraModule*>(this->module())->session();
+  d->Settings->setLogic(fenestraLogic());
+  d->session = dynamic_cast<qSlicerFenestraModule*>(this->module())->session();
   connectPanel();
   connectSession();
-  m_session->queryCapabilities();
+  d->session->queryCapabilities();
   updateButtons();
 }
 
 void qSlicerFenestraModuleWidget::connectPanel() {
-  const qSlicerFenestraPanel& panel = *m_panel;
-  connect(panel.sample, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::loadSample);
-  connect(panel.renders, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(onRenderChosen()));
-  connect(panel.showPreview, &QCheckBox::toggled, this, [this](bool shown) {
-    m_panel->preview->setVisible(shown);
-    m_panel->previewState->setVisible(shown);
-    preview();
-  });
-  connect(panel.render, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::render);
-  connect(panel.turn, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::renderTurntable);
-  connect(panel.resume, &QPushButton::clicked, this, [this] {
-    m_session->resume(chosenRender());
+  using Widget = qSlicerFenestraModuleWidget;
+  Q_D(qSlicerFenestraModuleWidget);
+  connect(d->RendersBox, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(onRenderChosen()));
+  connect(d->PreviewBox, &QCheckBox::toggled, this, &Widget::preview);
+  connect(d->RenderButton, &QPushButton::clicked, this, &Widget::render);
+  connect(d->ResumeButton, &QPushButton::clicked, this, [this, d] {
+    d->session->resume(d->chosenRender());
     updateButtons();
   });
-  connect(panel.player, &qSlicerFenestraPlayer::frameChanged, this, [this](int frame) {
-    if (chosenRender())
-      fenestraLogic()->ShowFrame(chosenRender(), frame);
+  connect(d->Player, &qSlicerFenestraPlayer::frameChanged, this, [this, d](int frame) {
+    if (d->chosenRender())
+      fenestraLogic()->ShowFrame(d->chosenRender(), frame);
   });
-  connect(panel.stop, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::stop);
-  connect(panel.repeat, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::repeat);
-  connect(panel.show, &QPushButton::clicked, this, [this] {
-    clearStatus();
-    showResult(chosenRender());
+  connect(d->StopButton, &QPushButton::clicked, this, &Widget::stop);
+  connect(d->RepeatButton, &QPushButton::clicked, this, &Widget::repeat);
+  connect(d->ShowButton, &QPushButton::clicked, this, [this, d] {
+    d->clearStatus();
+    showResult(d->chosenRender());
   });
-  connect(panel.back, &QPushButton::clicked, this, [this] { fenestraLogic()->ShowLayoutBefore(); });
-  connect(panel.save, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::save);
+  connect(d->BackButton, &QPushButton::clicked, this, [this] {
+    fenestraLogic()->ShowLayoutBefore();
+    updateButtons();
+  });
+  connect(d->SaveButton, &QPushButton::clicked, this, &Widget::save);
+  connect(d->Settings, &qSlicerFenestraSettings::sampleRequested, this, &Widget::loadSample);
+  connect(d->Settings, &qSlicerFenestraSettings::turntableRequested, this,
+          &Widget::renderTurntable);
+  connect(d->Settings, &qSlicerFenestraSettings::changed, this, [this, d] {
+    d->session->queryMaterials(vtkSlicerFenestraLogic::GetSegments(d->Settings->node()));
+    updateButtons();
+    preview();
+  });
 }
 
 void qSlicerFenestraModuleWidget::connectSession() {
-  connect(m_settings, &qSlicerFenestraSettings::changed, this, [this] {
-    m_session->queryMaterials(vtkSlicerFenestraLogic::GetSegments(m_settings->node()));
-    updateButtons();
-    preview();
-  });
-  connect(m_session, &qSlicerFenestraSession::capabilitiesReceived, this,
-          [this](const qFenestraCapabilities& capabilities) {
-            m_panel->setCapabilities(capabilities);
-            m_settings->use(m_settings->node());
+  using Session = qSlicerFenestraSession;
+  Q_D(qSlicerFenestraModuleWidget);
+  connect(d->session, &Session::capabilitiesReceived, this,
+          [d](const qFenestraCapabilities& capabilities) {
+            d->Settings->setCapabilities(capabilities);
+            d->Settings->use(d->Settings->node());
           });
-  connect(m_session, &qSlicerFenestraSession::materialsReceived, m_panel->materials,
-          &qSlicerFenestraMaterials::setKnownMaterials);
-  connect(m_session, &qSlicerFenestraSession::previewReceived, this,
-          &qSlicerFenestraModuleWidget::showPreviewImage);
-  connect(m_session, &qSlicerFenestraSession::previewRefused, m_panel->previewState,
-          &QLabel::setText);
-  connect(m_session, &qSlicerFenestraSession::started, this, [this](Node*) {
-    m_samplesAndNoise.clear();
-    m_progressAge.invalidate();
-    setStatus(tr("Rendering..."));
+  connect(d->session, &Session::materialsReceived, d->Settings,
+          &qSlicerFenestraSettings::setKnownMaterials);
+  connect(d->session, &Session::previewReceived, this,
+          [d](const QImage& image, const qFenestraPreviewImage& info) {
+            d->showPreviewImage(image, info);
+          });
+  connect(d->session, &Session::previewRefused, d->PreviewStateLabel, &QLabel::setText);
+  connect(d->session, &Session::started, this, [this, d](Node*) {
+    d->samplesAndNoise.clear();
+    d->progressAge.invalidate();
+    d->setStatus(tr("Rendering..."));
     updateButtons();
   });
-  connect(m_session, &qSlicerFenestraSession::statusChanged, this,
-          [this](const QString& text) { m_samplesAndNoise = text; });
-  connect(m_session, &qSlicerFenestraSession::progressed, this,
+  connect(d->session, &Session::statusChanged, this,
+          [d](const QString& text) { d->samplesAndNoise = text; });
+  connect(d->session, &Session::progressed, this,
           [this](Node*, double fraction, double seconds) { onProgress(fraction, seconds); });
-  connect(m_session, &qSlicerFenestraSession::ended, this, &qSlicerFenestraModuleWidget::onEnded);
+  connect(d->session, &Session::ended, this, &qSlicerFenestraModuleWidget::onEnded);
 }
 
 // ---- the scene
@@ -144,7 +164,6 @@ void qSlicerFenestraModuleWidget::setMRMLScene(vtkMRMLScene* scene) {
   this->qvtkReconnect(before, scene, vtkMRMLScene::EndImportEvent, this, SLOT(onSceneImported()));
   this->qvtkReconnect(before, scene, vtkMRMLScene::EndBatchProcessEvent, this, SLOT(useNewScene()));
   Superclass::setMRMLScene(scene);
-  emit m_panel->mrmlSceneChanged(scene);
   useScene();
 }
 
@@ -154,54 +173,56 @@ void qSlicerFenestraModuleWidget::enter() {
 }
 
 void qSlicerFenestraModuleWidget::exit() {
-  m_session->preview(nullptr);
+  Q_D(qSlicerFenestraModuleWidget);
+  d->session->preview(nullptr);
   Superclass::exit();
 }
 
 /// Clears messages about the scene; the module closes the session's scene.
 void qSlicerFenestraModuleWidget::onSceneClosed() {
-  m_sceneIsNew = true;
-  clearStatus();
+  Q_D(qSlicerFenestraModuleWidget);
+  d->sceneIsNew = true;
+  d->clearStatus();
 }
 
 void qSlicerFenestraModuleWidget::onSceneImported() {
-  m_sceneIsNew = true;
+  Q_D(qSlicerFenestraModuleWidget);
+  d->sceneIsNew = true;
 }
 
 /// Called at the end of a batch: earlier, the panel's boxes lack the nodes, and opening a scene
 /// closes the old one in the same batch.
 void qSlicerFenestraModuleWidget::useNewScene() {
-  if (m_sceneIsNew)
+  Q_D(qSlicerFenestraModuleWidget);
+  if (d->sceneIsNew)
     useScene();
 }
 
 void qSlicerFenestraModuleWidget::useScene() {
+  Q_D(qSlicerFenestraModuleWidget);
   if (!this->isEntered() || !this->mrmlScene() || this->mrmlScene()->IsBatchProcessing())
     return;
-  m_sceneIsNew = false;
+  d->sceneIsNew = false;
   const bool isNew = !this->mrmlScene()->GetSingletonNode("Settings", "vtkMRMLFenestraRenderNode");
   Node* settings = fenestraLogic()->GetSettings();
   if (const std::string size = isNew ? findViewSize(512.0) : ""; !size.empty())
     settings->SetFlag("size", size);
-  m_settings->use(settings);
-  if (!chosenRender())
-    m_panel->renders->setCurrentNode(fenestraLogic()->GetShownRender());
+  d->Settings->use(settings);
+  if (!d->chosenRender())
+    d->RendersBox->setCurrentNode(fenestraLogic()->GetShownRender());
 }
 
 void qSlicerFenestraModuleWidget::preview() {
-  const bool shown = this->isEntered() && m_panel->showPreview->isChecked() && hasVolume();
-  m_session->preview(shown ? m_settings->node() : nullptr);
+  Q_D(qSlicerFenestraModuleWidget);
+  const bool shown = this->isEntered() && d->PreviewBox->isChecked() && d->hasVolume();
+  d->session->preview(shown ? d->Settings->node() : nullptr);
 }
 
-bool qSlicerFenestraModuleWidget::hasVolume() const {
-  return m_settings->node() && m_settings->node()->GetNodeReference(Node::VolumeRole);
+bool qSlicerFenestraModuleWidgetPrivate::hasVolume() const {
+  return Settings->node() && Settings->node()->GetNodeReference(Node::VolumeRole);
 }
 
 // ---- renders
-
-Node* qSlicerFenestraModuleWidget::chosenRender() const {
-  return Node::SafeDownCast(m_panel->renders->currentNode());
-}
 
 void qSlicerFenestraModuleWidget::render() {
   start(qSlicerFenestraSession::Kind::picture);
@@ -212,23 +233,26 @@ void qSlicerFenestraModuleWidget::renderTurntable() {
 }
 
 void qSlicerFenestraModuleWidget::start(qSlicerFenestraSession::Kind kind) {
-  if (!m_settings->node())
+  Q_D(qSlicerFenestraModuleWidget);
+  if (!d->Settings->node())
     return;
-  clearStatus();
-  m_session->render(m_settings->node(), kind);
+  d->clearStatus();
+  d->session->render(d->Settings->node(), kind);
   updateButtons();
 }
 
 /// Shows the result twice: a view that the layout just created fits the image only once the view
 /// has its size.
 void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
+  Q_D(qSlicerFenestraModuleWidget);
   const vtkWeakPointer<Node> shown = render;
-  QTimer::singleShot(0, this, [this, shown, times] {
+  QTimer::singleShot(0, this, [this, d, shown, times] {
     if (!shown || !shown->GetScene())
       return;
     fenestraLogic()->ShowResult(shown);
-    if (shown == chosenRender() && shown->IsTurntable())
-      fenestraLogic()->ShowFrame(shown, m_panel->player->frame());
+    if (shown == d->chosenRender() && shown->IsTurntable())
+      fenestraLogic()->ShowFrame(shown, d->Player->frame());
+    updateButtons(); // Back
     if (times > 1)
       showResult(shown, times - 1);
   });
@@ -236,29 +260,31 @@ void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
 
 /// Writing the results may take long; a second call ends the render without writing.
 void qSlicerFenestraModuleWidget::stop() {
-  m_session->stop();
-  if (m_session->isRendering())
-    setStatus(tr("Stopping: writing the finished samples. Press Stop again to discard them."));
+  Q_D(qSlicerFenestraModuleWidget);
+  d->session->stop();
+  if (d->session->isRendering())
+    d->setStatus(tr("Stopping: writing the finished samples. Press Stop again to discard them."));
 }
 
 void qSlicerFenestraModuleWidget::repeat() {
-  Node* render = chosenRender();
-  if (!render || !m_settings->node())
+  Q_D(qSlicerFenestraModuleWidget);
+  Node* render = d->chosenRender();
+  if (!render || !d->Settings->node())
     return;
-  m_settings->copy(render);
+  d->Settings->copy(render);
   if (render->WithholdsFiles())
-    return setStatus(
+    return d->setStatus(
         tr("This image needs files that are named in the scene. Allow them above, then "
            "press Render."));
   start(render->IsTurntable() ? qSlicerFenestraSession::Kind::turntable
                               : qSlicerFenestraSession::Kind::picture);
 }
 
-void qSlicerFenestraModuleWidget::showPreviewImage(const QImage& image,
-                                                   const qFenestraPreviewImage& info) {
-  m_panel->preview->setPixmap(QPixmap::fromImage(image));
+void qSlicerFenestraModuleWidgetPrivate::showPreviewImage(const QImage& image,
+                                                          const qFenestraPreviewImage& info) {
+  PreviewLabel->setPixmap(QPixmap::fromImage(image));
   const QString noise = info.noise < 0.0 ? QString() : tr(", noise %1").arg(info.noise, 0, 'g', 2);
-  m_panel->previewState->setText(
+  PreviewStateLabel->setText(
       tr("Preview: %1 samples per pixel%2, %3")
           .arg(info.samples)
           .arg(noise, qSlicerFenestraMeasures::formatDuration(info.seconds)));
@@ -266,103 +292,113 @@ void qSlicerFenestraModuleWidget::showPreviewImage(const QImage& image,
 
 /// Updates at most once per `interval`: Slicer's window redraws slowly without a GPU.
 void qSlicerFenestraModuleWidget::onProgress(double fraction, double seconds) {
+  Q_D(qSlicerFenestraModuleWidget);
   constexpr int interval = 500; // milliseconds
-  if (m_session->isStopping() || (m_progressAge.isValid() && m_progressAge.elapsed() < interval))
+  if (d->session->isStopping() || (d->progressAge.isValid() && d->progressAge.elapsed() < interval))
     return;
-  m_progressAge.start();
-  m_panel->progress->show();
-  m_panel->progress->setValue(static_cast<int>(1000.0 * fraction));
+  d->progressAge.start();
+  d->ProgressBar->show();
+  d->ProgressBar->setValue(static_cast<int>(1000.0 * fraction));
   QString line = tr("%1 elapsed").arg(qSlicerFenestraMeasures::formatDuration(seconds));
   if (fraction > 0.01)
     line +=
         tr(", %1 left")
             .arg(qSlicerFenestraMeasures::formatDuration(seconds * (1.0 - fraction) / fraction));
-  if (!m_samplesAndNoise.isEmpty())
-    line += ", " + m_samplesAndNoise;
-  if (m_session->waitingCount() > 0)
-    line += tr("; %n more in the queue", nullptr, m_session->waitingCount());
-  setStatus(line);
+  if (!d->samplesAndNoise.isEmpty())
+    line += ", " + d->samplesAndNoise;
+  if (d->session->waitingCount() > 0)
+    line += tr("; %n more in the queue", nullptr, d->session->waitingCount());
+  d->setStatus(line);
 }
 
-QString qSlicerFenestraModuleWidget::toUserText(Node* render, qFenestraOutcome::Kind kind) const {
+QString qSlicerFenestraModuleWidgetPrivate::toUserText(Node* render,
+                                                       qFenestraOutcome::Kind kind) const {
   using Kind = qFenestraOutcome::Kind;
   const bool isComplete = kind == Kind::done;
   if (!render)
     return kind == Kind::killed ? tr("Stopped immediately, without an image.")
                                 : tr("Stopped before there was an image.");
   const QString description = QString::fromUtf8(render->GetDescription());
-  if (description.isEmpty()) // the renderer wrote no statistics
+  if (description.isEmpty()) // no statistics
     return isComplete ? tr("Done.") : tr("Stopped.");
   return (isComplete ? tr("Done: %1.") : tr("Stopped: %1.")).arg(description);
 }
 
 void qSlicerFenestraModuleWidget::onEnded(Node* render, const qFenestraOutcome& outcome) {
-  m_panel->progress->hide();
+  Q_D(qSlicerFenestraModuleWidget);
+  d->ProgressBar->hide();
   if (outcome.kind == qFenestraOutcome::Kind::failed)
-    setStatus(outcome.message, outcome.details);
+    d->setStatus(outcome.message, outcome.details);
   else
-    setStatus(toUserText(render, outcome.kind));
+    d->setStatus(d->toUserText(render, outcome.kind));
   if (render) {
-    const QSignalBlocker blocker(m_panel->renders); // shown below
-    m_panel->renders->setCurrentNode(render);
+    const QSignalBlocker blocker(d->RendersBox); // shown below
+    d->RendersBox->setCurrentNode(render);
   }
   showSelected();
   showResult(render);
 }
 
-void qSlicerFenestraModuleWidget::setStatus(const QString& message, const QString& details) {
-  m_panel->state->setText(message);
-  m_panel->detailsText->setText(details);
-  m_panel->details->setVisible(!details.isEmpty());
-  m_panel->details->setChecked(false);
+void qSlicerFenestraModuleWidgetPrivate::setStatus(const QString& message, const QString& details) {
+  StateLabel->setText(message);
+  DetailsLabel->setText(details);
+  DetailsButton->setVisible(!details.isEmpty());
+  DetailsButton->setChecked(false);
 }
 
 /// Clears the last render's message after another user action.
-void qSlicerFenestraModuleWidget::clearStatus() {
-  if (!m_session->isRendering())
+void qSlicerFenestraModuleWidgetPrivate::clearStatus() {
+  if (!session->isRendering())
     setStatus({});
 }
 
 void qSlicerFenestraModuleWidget::updateButtons() {
-  const bool hasVolume = this->hasVolume();
-  m_panel->render->setEnabled(hasVolume);
-  m_panel->turn->setEnabled(hasVolume);
-  m_panel->sample->setVisible(!hasVolume);
+  Q_D(qSlicerFenestraModuleWidget);
+  using qSlicerFenestraWidgets::setEnabled;
+  const bool hasVolume = d->hasVolume();
+  setEnabled(d->RenderButton, hasVolume, tr("Choose a volume first"));
+  d->Settings->setHasVolume(hasVolume);
   if (!hasVolume) {
-    m_panel->preview->setText(tr("Load a volume, or the sample knee"));
-    m_panel->previewState->clear();
+    d->PreviewLabel->setText(tr("Load a volume, or the sample knee"));
+    d->PreviewStateLabel->clear();
   }
-  m_panel->stop->setEnabled(m_session->isRendering());
-  Node* render = chosenRender();
+  setEnabled(d->StopButton, d->session->isRendering(), tr("No render is running"));
+  Node* render = d->chosenRender();
   const bool hasImage = render && render->GetNodeReference(Node::PictureRole);
-  m_panel->show->setEnabled(hasImage);
-  m_panel->save->setEnabled(hasImage);
-  m_panel->back->setEnabled(fenestraLogic()->GetShownRender() != nullptr);
-  m_panel->repeat->setEnabled(render != nullptr);
-  m_panel->resume->setVisible(m_session->canResume(render));
+  const QString reason = tr("Render an image, or choose one above");
+  setEnabled(d->ShowButton, hasImage, reason);
+  setEnabled(d->SaveButton, hasImage, reason);
+  setEnabled(d->RepeatButton, render != nullptr, reason);
+  setEnabled(d->BackButton, fenestraLogic()->GetShownRender() != nullptr,
+             tr("No image is shown beside the 3D view"));
+  d->ResumeButton->setVisible(d->session->canResume(render));
 }
 
 /// Replaces the displayed image, if any, by the chosen one.
 void qSlicerFenestraModuleWidget::onRenderChosen() {
+  Q_D(qSlicerFenestraModuleWidget);
   showSelected();
-  if (chosenRender() && fenestraLogic()->GetShownRender())
-    showResult(chosenRender());
+  if (d->chosenRender() && fenestraLogic()->GetShownRender())
+    showResult(d->chosenRender());
 }
 
 /// Shows description, player and measures of the chosen image.
 void qSlicerFenestraModuleWidget::showSelected() {
+  Q_D(qSlicerFenestraModuleWidget);
   updateButtons();
-  Node* render = chosenRender();
+  Node* render = d->chosenRender();
   const char* description = render ? render->GetDescription() : nullptr;
-  m_panel->description->setText(QString::fromUtf8(description ? description : ""));
+  d->DescriptionLabel->setText(QString::fromUtf8(description ? description : ""));
   const int frames =
       render && render->IsTurntable() ? fenestraLogic()->GetNumberOfFrames(render) : 0;
-  m_panel->player->setVisible(frames > 0);
-  m_panel->player->setFrames(frames);
-  showMeasures(render);
+  if (render)
+    d->Images->setCollapsed(false);
+  d->Player->setVisible(frames > 0);
+  d->Player->setFrames(frames);
+  d->showMeasures(render);
 }
 
-void qSlicerFenestraModuleWidget::showMeasures(Node* render) {
+void qSlicerFenestraModuleWidgetPrivate::showMeasures(Node* render) {
   const char* text = render ? render->GetAttribute(Node::MeasuresAttribute) : nullptr;
   const auto measures =
       qSlicerFenestraMeasures::toUserText(QJsonDocument::fromJson(text ? text : "").object());
@@ -371,61 +407,45 @@ void qSlicerFenestraModuleWidget::showMeasures(Node* render) {
     rows += QString("<tr><td>%1:&nbsp;</td><td>%2</td></tr>").arg(one.name, one.value);
     help += QString("<p><b>%1</b>: %2</p>").arg(one.name, one.help);
   }
-  m_panel->measures->setText(rows.isEmpty() ? rows : "<table>" + rows + "</table>");
-  m_panel->measures->setToolTip(help);
-  m_panel->measures->setVisible(!rows.isEmpty());
+  MeasuresLabel->setText(rows.isEmpty() ? rows : "<table>" + rows + "</table>");
+  MeasuresLabel->setToolTip(help);
+  MeasuresLabel->setVisible(!rows.isEmpty());
 }
 
 // ---- files
 
 void qSlicerFenestraModuleWidget::save() {
-  Node* render = chosenRender();
-  const bool isTurntable = render->IsTurntable();
-  const QStringList frames = m_session->results().findFrames(render);
-  if (isTurntable ? frames.isEmpty() : m_session->results().findFile(render, "png").isEmpty())
-    return setStatus(
-        tr("The files of this image were removed with the session that rendered it. Press "
-           "Repeat, then save."));
-  const QString png = isTurntable ? tr("Numbered images (*.png)") : tr("Image (*.png)");
-  const QString exr = tr("Linear color and depth (*.exr)");
-  // Overwriting is confirmed below for the final names, which may gain an extension or a number.
-  const QString chosen = QFileDialog::getSaveFileName(
-      this, isTurntable ? tr("Save numbered frames") : tr("Save image"),
-      QString::fromUtf8(render->GetName()) + ".png", isTurntable ? png : png + ";;" + exr, nullptr,
-      QFileDialog::DontConfirmOverwrite);
-  if (chosen.isEmpty())
-    return;
-  const QString ending = chosen.endsWith(".exr", Qt::CaseInsensitive) ? "exr" : "png";
-  const QString picture = m_session->results().findFile(render, ending);
-  saveAs(isTurntable ? qFenestraCopies::frames(frames, chosen)
-                     : qFenestraCopies::picture(picture, chosen, "." + ending));
-}
-
-void qSlicerFenestraModuleWidget::saveAs(const qFenestraCopies& copies) {
-  const QStringList replaced = copies.existingTargets();
-  const QString question = replaced.size() == 1
-                               ? tr("%1 already exists. Replace it?").arg(replaced.first())
-                               : tr("%n files already exist, the first is %1. Replace them?",
-                                    nullptr, static_cast<int>(replaced.size()))
-                                     .arg(replaced.value(0));
-  if (!replaced.isEmpty() && QMessageBox::question(this, tr("Save"), question) != QMessageBox::Yes)
-    return;
-  const QString failed = copies.write();
-  setStatus(
-      failed.isEmpty()
-          ? tr("Saved as %1.").arg(copies.names())
-          : tr("%1 could not be written and is unchanged. Choose another folder.").arg(failed));
+  Q_D(qSlicerFenestraModuleWidget);
+  const QString message =
+      qSlicerFenestraSaving::save(d->chosenRender(), d->session->results(), this);
+  if (!message.isEmpty())
+    d->setStatus(message);
 }
 
 void qSlicerFenestraModuleWidget::loadSample() {
-  m_session->makeSample([this](const QString& scene, const QString& message) {
+  Q_D(qSlicerFenestraModuleWidget);
+  d->setLoading(true);
+  const QPointer<qSlicerFenestraModuleWidget> self = this; // may end before the session
+  d->session->makeSample([self, d](const QString& scene, const QString& message) {
+    if (!self)
+      return;
+    d->setLoading(false);
     if (scene.isEmpty())
-      return setStatus(tr("The sample could not be generated."), message);
+      return d->setStatus(tr("The sample could not be generated."), message);
     qSlicerIO::IOProperties properties;
     properties["fileName"] = scene;
     properties["clear"] = false;
     qSlicerCoreApplication::application()->coreIOManager()->loadNodes("SceneFile", properties);
-    fenestraLogic()->ShowNewestVolume();
-    setStatus(tr("The synthetic knee is loaded. Choose a segment as focus."));
+    self->fenestraLogic()->ShowNewestVolume();
+    d->setStatus(tr("The synthetic knee is loaded. Choose a segment as focus."));
   });
+}
+
+/// Shows that the sample is being generated, which reports no progress.
+void qSlicerFenestraModuleWidgetPrivate::setLoading(bool isLoading) {
+  Settings->setSampleEnabled(!isLoading);
+  ProgressBar->setMaximum(isLoading ? 0 : 1000); // 0: busy
+  ProgressBar->setVisible(isLoading);
+  if (isLoading)
+    setStatus(tr("Generating the synthetic knee..."));
 }

@@ -1,26 +1,24 @@
 #include "qSlicerFenestraWidgets.h"
 
+#include <QAbstractButton>
 #include <QComboBox>
 #include <QFormLayout>
+#include <QHash>
 #include <QLabel>
 #include <QObject>
 #include <QSignalBlocker>
 
 namespace {
 
-constexpr int addedRole = Qt::UserRole + 1; ///< true: the item was added by selectOrAdd
+constexpr int addedRole = Qt::UserRole + 1;          ///< true: the item was added by selectOrAdd
+constexpr const char* helpProperty = "FenestraHelp"; ///< tool tip of the enabled widget
 
 } // namespace
 
-QComboBox* qSlicerFenestraWidgets::makeComboBox(const QString& name, const QList<Choice>& all,
-                                                const QString& help) {
-  auto* box = new QComboBox;
-  box->setObjectName(name);
-  box->setToolTip(help);
-  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon); // for long texts
-  for (const Choice& choice : all)
-    box->addItem(choice.icon, choice.text, choice.data);
-  return box;
+void qSlicerFenestraWidgets::setItemData(QComboBox* box, const QStringList& data) {
+  Q_ASSERT(box->count() == data.size());
+  for (int i = 0; i < box->count(); ++i)
+    box->setItemData(i, data[i]);
 }
 
 void qSlicerFenestraWidgets::setChoiceOffered(QComboBox* box, int index, const Choice& choice,
@@ -61,6 +59,29 @@ void qSlicerFenestraWidgets::showRow(const QFormLayout* form, QWidget* editor, b
   editor->setVisible(shown);
   if (QWidget* label = form->labelForField(editor))
     label->setVisible(shown);
+}
+
+void qSlicerFenestraWidgets::setEnabled(QWidget* widget, bool enabled, const QString& whatEnables) {
+  if (!widget->property(helpProperty).isValid())
+    widget->setProperty(helpProperty, widget->toolTip());
+  widget->setEnabled(enabled);
+  widget->setToolTip(enabled ? widget->property(helpProperty).toString() : whatEnables);
+}
+
+void qSlicerFenestraWidgets::nameParts(QWidget* panel) {
+  QHash<const QWidget*, QString> labels;
+  for (const QLabel* label : panel->findChildren<QLabel*>())
+    if (label->buddy())
+      labels[label->buddy()] = label->text().remove('&');
+  for (QWidget* part : panel->findChildren<QWidget*>()) {
+    const auto* button = qobject_cast<QAbstractButton*>(part);
+    if (part->focusPolicy() == Qt::NoFocus || (button && !button->text().isEmpty()))
+      continue;
+    QString name;
+    for (const QWidget* one = part; one != panel && name.isEmpty(); one = one->parentWidget())
+      name = one->accessibleName().isEmpty() ? labels.value(one) : one->accessibleName();
+    part->setAccessibleName(name);
+  }
 }
 
 QString qSlicerFenestraWidgets::findFlag(const std::map<std::string, std::string>& flags,

@@ -2,8 +2,8 @@
 #define __qSlicerFenestraWidgets_h
 
 #include <QIcon>
-#include <QList>
 #include <QString>
+#include <QStringList>
 
 #include <map>
 #include <string>
@@ -20,7 +20,8 @@ struct Choice {
   QIcon icon = {};
 };
 
-QComboBox* makeComboBox(const QString& name, const QList<Choice>& all, const QString& help);
+/// Sets the flag values of the items, whose texts are in the .ui file.
+void setItemData(QComboBox* box, const QStringList& data);
 /// Adds a choice at `index` or removes it; the selection stays.
 void setChoiceOffered(QComboBox* box, int index, const Choice& choice, bool offered);
 /// Selects the item with `data`, else the first.
@@ -30,6 +31,11 @@ void selectOrAdd(QComboBox* box, const QString& data);
 std::string selectedData(const QComboBox* box);
 
 void showRow(const QFormLayout* form, QWidget* editor, bool shown);
+/// Enables a widget, or disables it with a tool tip that says what enables it.
+void setEnabled(QWidget* widget, bool enabled, const QString& whatEnables);
+/// Names the parts of compound widgets like the widgets, for screen readers: by the widget's own
+/// name or text, else by its label.
+void nameParts(QWidget* panel);
 
 /// Value of a flag; empty: not set.
 QString findFlag(const std::map<std::string, std::string>& flags, const char* name);

@@ -37,7 +37,7 @@ QList<MeasureInfo> listKnownMeasures() {
        tr("Depth difference between the outermost pixels of the focus and the surface beside "
           "them")},
       {"boundarySlopeJump", Unit::slope, tr("Kink at the edge"),
-       tr("Change of the depth's slope at the edge of the focus, mm per mm")},
+       tr("Change of the depth's slope at the edge of the focus: mm of depth per mm across")},
       {"boundaryDepthJumps", Unit::fraction, tr("Discontinuous edge"),
        tr("Percentage of the edge where the focus's own depth jumps; no gap is measured there")},
       {"surfaceChangeMmPerDegree", Unit::millimetersPerDegree, tr("Change during rotation"),
@@ -62,7 +62,7 @@ QString toSuffix(Unit unit) {
   case Unit::millimetersPerDegree:
     return QObject::tr(" mm/\u00b0");
   case Unit::slope:
-    break;
+    return QObject::tr(" mm/mm");
   }
   return {};
 }

@@ -1,15 +1,13 @@
 #ifndef __qSlicerFenestraLook_h
 #define __qSlicerFenestraLook_h
 
+#include <QScopedPointer>
 #include <QWidget>
 
 #include <map>
 #include <string>
 
-class ctkSliderWidget;
-class QComboBox;
-class QDoubleSpinBox;
-class QFormLayout;
+class qSlicerFenestraLookPrivate;
 struct qFenestraCapabilities;
 
 /// \brief Widgets for the appearance: tissue colors, lights, background, exposure, tone curve.
@@ -23,6 +21,7 @@ public:
   using Flags = std::map<std::string, std::string>;
 
   explicit qSlicerFenestraLook(QWidget* parent = nullptr);
+  ~qSlicerFenestraLook() override;
 
   /// Shows the controls that the renderer supports.
   void setCapabilities(const qFenestraCapabilities& capabilities);
@@ -38,20 +37,12 @@ public:
 signals:
   void changed();
 
-private:
-  void buildLights(QFormLayout* form);
-  void buildDisplay(QFormLayout* form);
-  void showLights(const QString& lights, const QString& rig);
+protected:
+  QScopedPointer<qSlicerFenestraLookPrivate> d_ptr;
 
-  QFormLayout* m_form;
-  QComboBox* m_transfer;
-  QComboBox* m_rig;
-  ctkSliderWidget* m_strengths[4]; ///< percent; key, fill, rim, environment
-  QComboBox* m_background;
-  QDoubleSpinBox* m_exposure;
-  QComboBox* m_tone;
-  double m_shownExposure = 0.0; ///< a flag outside the box's range stays until the box changes
-  QString m_shownTone;
+private:
+  Q_DECLARE_PRIVATE(qSlicerFenestraLook)
+  Q_DISABLE_COPY(qSlicerFenestraLook)
 };
 
 #endif

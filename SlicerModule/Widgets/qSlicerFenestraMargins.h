@@ -1,12 +1,11 @@
 #ifndef __qSlicerFenestraMargins_h
 #define __qSlicerFenestraMargins_h
 
-#include <QMap>
+#include <QList>
+#include <QScopedPointer>
 #include <QWidget>
 
-class QCheckBox;
-class QDoubleSpinBox;
-class QFormLayout;
+class qSlicerFenestraMarginsPrivate;
 
 struct qSlicerFenestraSegment {
   QString id, name;
@@ -18,6 +17,7 @@ class qSlicerFenestraMargins : public QWidget {
 
 public:
   explicit qSlicerFenestraMargins(QWidget* parent = nullptr);
+  ~qSlicerFenestraMargins() override;
 
   /// Shows the numbers of the flag `margin`, in the order of the segments.
   void show(const QString& flag, const QList<qSlicerFenestraSegment>& focus);
@@ -26,16 +26,14 @@ public:
 signals:
   void changed();
 
-private:
-  void build(const QList<qSlicerFenestraSegment>& focus);
-  void showEach();
+protected:
+  QScopedPointer<qSlicerFenestraMarginsPrivate> d_ptr;
 
-  QDoubleSpinBox* m_all;
-  QCheckBox* m_each;
-  QFormLayout* m_rows;
-  QList<qSlicerFenestraSegment> m_focus;
-  QList<QDoubleSpinBox*> m_boxes;  ///< one per focus segment
-  QMap<QString, double> m_margins; ///< mm by segment id; kept for segments outside the focus
+private:
+  Q_DECLARE_PRIVATE(qSlicerFenestraMargins)
+  Q_DISABLE_COPY(qSlicerFenestraMargins)
+
+  void build(const QList<qSlicerFenestraSegment>& focus);
 };
 
 #endif

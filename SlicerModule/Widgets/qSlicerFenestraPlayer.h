@@ -1,13 +1,10 @@
 #ifndef __qSlicerFenestraPlayer_h
 #define __qSlicerFenestraPlayer_h
 
-#include <QTimer>
+#include <QScopedPointer>
 #include <QWidget>
 
-class QLabel;
-class QSlider;
-class QSpinBox;
-class QToolButton;
+class qSlicerFenestraPlayerPrivate;
 
 /// Plays frames in a loop.
 class qSlicerFenestraPlayer : public QWidget {
@@ -15,6 +12,7 @@ class qSlicerFenestraPlayer : public QWidget {
 
 public:
   explicit qSlicerFenestraPlayer(QWidget* parent = nullptr);
+  ~qSlicerFenestraPlayer() override;
 
   /// Sets the number of frames, of another animation or of the same one with more frames. Stops
   /// playback.
@@ -25,15 +23,12 @@ signals:
   /// `frame`: index from 0.
   void frameChanged(int frame);
 
-private:
-  void play(bool running);
-  void step();
+protected:
+  QScopedPointer<qSlicerFenestraPlayerPrivate> d_ptr;
 
-  QToolButton* m_play;
-  QSlider* m_slider;
-  QSpinBox* m_speed;
-  QLabel* m_position;
-  QTimer m_timer;
+private:
+  Q_DECLARE_PRIVATE(qSlicerFenestraPlayer)
+  Q_DISABLE_COPY(qSlicerFenestraPlayer)
 };
 
 #endif

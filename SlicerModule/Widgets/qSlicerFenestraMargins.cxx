@@ -1,0 +1,116 @@
+#include "qSlicerFenestraMargins.h"
+
+#include "qSlicerFenestraWidgets.h"
+#include "ui_qSlicerFenestraMargins.h"
+
+#include <QLabel>
+#include <QMap>
+#include <QSignalBlocker>
+
+#include <algorithm>
+
+namespace {
+
+bool areEqual(const QList<qSlicerFenestraSegment>& a, const QList<qSlicerFenestraSegment>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const qSlicerFenestraSegment& one, const qSlicerFenestraSegment& other) {
+                      return one.id == other.id && one.name == other.name;
+                    });
+}
+
+} // namespace
+
+class qSlicerFenestraMarginsPrivate : public Ui_qSlicerFenestraMargins {
+  Q_DECLARE_TR_FUNCTIONS(qSlicerFenestraMargins)
+
+public:
+  bool isOnePerSegment() const { return MarginEachBox->isChecked() && boxes.size() > 1; }
+  void showEach();
+
+  QList<qSlicerFenestraSegment> focus;
+  QList<QDoubleSpinBox*> boxes;  ///< one per focus segment
+  QMap<QString, double> margins; ///< mm by segment id; kept for segments outside the focus
+};
+
+void qSlicerFenestraMarginsPrivate::showEach() {
+  MarginEachBox->setVisible(boxes.size() > 1);
+  qSlicerFenestraWidgets::setEnabled(MarginBox, !isOnePerSegment(),
+                                     tr("Each segment has its own margin below"));
+  for (QDoubleSpinBox* box : boxes)
+    qSlicerFenestraWidgets::showRow(Rows, box, isOnePerSegment());
+}
+
+qSlicerFenestraMargins::qSlicerFenestraMargins(QWidget* parent)
+    : QWidget(parent), d_ptr(new qSlicerFenestraMarginsPrivate) {
+  Q_D(qSlicerFenestraMargins);
+  d->setupUi(this);
+  connect(d->MarginBox, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+          &qSlicerFenestraMargins::changed);
+  connect(d->MarginEachBox, &QCheckBox::toggled, this, [this, d](bool each) {
+    if (each)
+      for (QDoubleSpinBox* box : d->boxes)
+        box->setValue(d->MarginBox->value());
+    d->showEach();
+    emit changed();
+  });
+  d->showEach();
+}
+
+qSlicerFenestraMargins::~qSlicerFenestraMargins() = default;
+
+void qSlicerFenestraMargins::show(const QString& flag, const QList<qSlicerFenestraSegment>& focus) {
+  Q_D(qSlicerFenestraMargins);
+  const QSignalBlocker blocker(this);
+  const QStringList numbers = flag.split(',');
+  build(focus);
+  const bool each = numbers.size() > 1 && numbers.size() == focus.size();
+  {
+    const QSignalBlocker eachBlocker(d->MarginEachBox); // the numbers are set below
+    d->MarginEachBox->setChecked(each);
+  }
+  if (!each)
+    d->MarginBox->setValue(numbers.first().toDouble());
+  for (int i = 0; each && i < d->boxes.size(); ++i)
+    d->boxes[i]->setValue(numbers[i].toDouble());
+  d->showEach();
+}
+
+QString qSlicerFenestraMargins::flag() const {
+  Q_D(const qSlicerFenestraMargins);
+  QStringList numbers;
+  if (d->isOnePerSegment())
+    for (const QDoubleSpinBox* box : d->boxes)
+      numbers << QString::number(box->value());
+  else
+    numbers << QString::number(d->MarginBox->value());
+  const bool none = std::all_of(numbers.begin(), numbers.end(),
+                                [](const QString& number) { return number.toDouble() == 0.0; });
+  return none && !d->MarginEachBox->isChecked() ? QString() : numbers.join(',');
+}
+
+void qSlicerFenestraMargins::build(const QList<qSlicerFenestraSegment>& focus) {
+  Q_D(qSlicerFenestraMargins);
+  if (areEqual(focus, d->focus))
+    return;
+  d->focus = focus;
+  d->boxes.clear();
+  while (d->Rows->rowCount() > 0)
+    d->Rows->removeRow(0);
+  for (const qSlicerFenestraSegment& segment : focus) {
+    auto* box = new QDoubleSpinBox;
+    box->setObjectName(QString("Margin%1").arg(d->boxes.size()));
+    box->setRange(d->MarginBox->minimum(), d->MarginBox->maximum());
+    box->setSingleStep(d->MarginBox->singleStep());
+    box->setSuffix(d->MarginBox->suffix());
+    box->setValue(d->margins.value(segment.id, d->MarginBox->value()));
+    connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
+            [this, d, id = segment.id](double margin) {
+              d->margins[id] = margin;
+              emit changed();
+            });
+    auto* name = new QLabel(segment.name + ":");
+    name->setWordWrap(true);
+    d->Rows->addRow(name, box);
+    d->boxes << box;
+  }
+}
