@@ -23,7 +23,7 @@ int qSlicerFenestraMeasuresTest1(int, char*[]) {
   CHECK_STD_STRING(words[0].value.toStdString(), "99.88 %");
   CHECK_STD_STRING(words[1].value.toStdString(), "25.0 %");
   CHECK_STD_STRING(words[2].value.toStdString(), "mean 0.012, 95 % below 0.05, at most 1.5 mm");
-  CHECK_STD_STRING(words[3].value.toStdString(), "mean 0.000, 95 % below 0.001, at most 54");
+  CHECK_STD_STRING(words[3].value.toStdString(), "mean 0.000, 95 % below 0.001, at most 54 mm/mm");
   for (const Measure& one : words)
     CHECK_BOOL(one.help.isEmpty(), false);
   // Invalid measures are skipped: a scene's attribute may hold any text.

@@ -66,6 +66,7 @@ int render(const Panel& panel, const char* from) {
   CHECK_BOOL(endsOneRender(panel, [&] { panel.find<QPushButton>("RenderButton")->click(); }), true);
   CHECK_NOT_NULL(panel.chosenRender());
   CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == panel.chosenRender(); }), true);
+  CHECK_BOOL(panel.find<QPushButton>("BackButton")->isEnabled(), true);
   return EXIT_SUCCESS;
 }
 
@@ -166,6 +167,11 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   CHECK_BOOL(
       waitFor([&] { return labelText(panel, "PreviewStateLabel").rfind("Preview:", 0) == 0; }),
       true);
+  panel.find<QPushButton>("BackButton")->click();
+  CHECK_NULL(panel.logic->GetShownRender());
+  CHECK_BOOL(panel.find<QPushButton>("BackButton")->isEnabled(), false);
+  panel.find<QPushButton>("ShowButton")->click();
+  CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == first; }), true);
   const std::string file = std::string(argv[2]) + "/reload.mrb";
   CHECK_BOOL(scene->WriteToMRB(file.c_str()), true);
 

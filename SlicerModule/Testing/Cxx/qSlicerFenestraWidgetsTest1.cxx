@@ -7,15 +7,17 @@
 #include "qSlicerFenestraLights.h"
 #include "qSlicerFenestraLook.h"
 #include "qSlicerFenestraMargins.h"
-#include "qSlicerFenestraPanel.h"
+#include "qSlicerFenestraPreviewLabel.h"
+#include "qSlicerFenestraSettings.h"
 
+#include <ctkCollapsibleGroupBox.h>
 #include <ctkSliderWidget.h>
-#include <qMRMLNodeComboBox.h>
 
 #include <QApplication>
 #include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QKeyEvent>
+#include <QVBoxLayout>
 
 namespace {
 
@@ -105,11 +107,16 @@ int checkRigs() {
   const auto strength = [&look](int i) {
     return look.findChild<ctkSliderWidget*>(QString("Strength%1").arg(i));
   };
+  const QWidget& hint = *look.findChild<QWidget*>("LightsHint");
   for (int i = 0; i < 4; ++i) {
     look.show({}, {}, false);
     CHECK_BOOL(strength(i)->isEnabled(), false); // by default
+    CHECK_BOOL(hint.isHidden(), false);
+    const QString reason = strength(i)->toolTip();
     look.show({{"lights", "cinema"}}, {}, false);
     CHECK_BOOL(strength(i)->isEnabled(), true);
+    CHECK_BOOL(hint.isHidden(), true);
+    CHECK_BOOL(strength(i)->toolTip() == reason, false);
     look.show({{"lights", "soft"}}, {}, false);
     CHECK_BOOL(strength(i)->isEnabled(), i == 3);
   }
@@ -144,7 +151,7 @@ int checkCapabilities() {
 
 /// Anatomies have icons where the resources contain one.
 int checkIcons() {
-  qSlicerFenestraPanel panel;
+  qSlicerFenestraSettings panel;
   qFenestraCapabilities capabilities;
   capabilities.flags["preset"].text = "(spine, heart, lungs)";
   panel.setCapabilities(capabilities);
@@ -155,9 +162,37 @@ int checkIcons() {
   return EXIT_SUCCESS;
 }
 
+/// The preview is as wide as the panel and has the image's aspect ratio, but is not higher than
+/// wide.
+int checkPreview() {
+  QWidget panel;
+  auto* preview = new qSlicerFenestraPreviewLabel;
+  auto* layout = new QVBoxLayout(&panel);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(preview);
+  layout->addStretch(1);
+  panel.resize(512, 800);
+  panel.show();
+  preview->setText("Load a volume");
+  CHECK_BOOL(preview->heightForWidth(512) < 100, true);
+  QPixmap image(256, 192);
+  image.fill(Qt::red);
+  preview->setPixmap(image);
+  QApplication::processEvents();
+  CHECK_BOOL(preview->size() == QSize(512, 384), true);
+  const QImage shown = preview->grab().toImage();
+  for (const QPoint& corner : {QPoint(2, 2), QPoint(509, 381)})
+    CHECK_BOOL(shown.pixelColor(corner) == QColor(Qt::red), true);
+  preview->setPixmap(image.scaled(96, 256));
+  QApplication::processEvents();
+  CHECK_BOOL(preview->size() == QSize(512, 512), true);
+  return EXIT_SUCCESS;
+}
+
 /// Numbers that may be "auto" can be set by the keyboard alone.
 int checkAutomatic() {
-  Clipping clipping(new qMRMLNodeComboBox);
+  Clipping clipping;
+  clipping.findChild<ctkCollapsibleGroupBox*>("ClipDetails")->setCollapsed(false); // enables them
   const QList<qSlicerFenestraSegment> focus = {{"A", "A"}};
   const auto taken = [&clipping](const char* flag) {
     Flags flags;
@@ -202,6 +237,7 @@ int qSlicerFenestraWidgetsTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkRigs());
   CHECK_EXIT_SUCCESS(checkCapabilities());
   CHECK_EXIT_SUCCESS(checkIcons());
+  CHECK_EXIT_SUCCESS(checkPreview());
   CHECK_EXIT_SUCCESS(checkAutomatic());
   return EXIT_SUCCESS;
 }

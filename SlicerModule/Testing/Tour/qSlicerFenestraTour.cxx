@@ -256,11 +256,12 @@ bool qSlicerFenestraTour::changeView() {
   bool good = true;
   if (m_panel->findChild<QComboBox*>("ViewBox")->findData("auto") >= 0)
     good = takePreviewScreenshot("14-view", [this] {
-      fold("What to show", true);
+      fold("WhatToShow", true);
+      fold("ViewAndLight", false);
       scrollTo("PreviewBox");
       return choose("ViewBox", "auto");
     });
-  fold("What to show", false);
+  fold("WhatToShow", false);
   if (!m_panel->findChild<QComboBox*>("PresetBox")->isHidden())
     good = good && takePreviewScreenshot("15-anatomy", [this] {
              scrollTo("PreviewBox");
@@ -275,7 +276,7 @@ bool qSlicerFenestraTour::renderMeasured() {
   if (!click("RenderButton") || !waitFor([&] { return m_ended > before; }, 300000))
     return false;
   wait(2000);
-  fold("View and light", true);
+  fold("ViewAndLight", true);
   scrollTo("SaveButton");
   wait(500);
   takeScreenshot("16-measures");

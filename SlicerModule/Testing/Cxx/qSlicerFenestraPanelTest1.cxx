@@ -1,0 +1,171 @@
+// The panel at first sight: what is open, what is gray and why, and names for screen readers.
+// Arguments: the renderer, a folder for files, the module's library.
+
+#include "FenestraPanel.h"
+#include "FenestraTesting.h"
+#include "qSlicerFenestraModule.h"
+
+#include <ctkCollapsibleButton.h>
+#include <qSlicerApplication.h>
+
+#include <QAbstractButton>
+#include <QAbstractSlider>
+#include <QAccessible>
+#include <QLineEdit>
+#include <QListWidget>
+#include <QProgressBar>
+#include <QScopedPointer>
+#include <QSpinBox>
+#include <QTableWidget>
+
+namespace {
+
+using FenestraTesting::endsOneRender;
+using FenestraTesting::Panel;
+using FenestraTesting::waitFor;
+
+/// The sections that a first image does not need are closed.
+int checkSections(const Panel& panel) {
+  CHECK_BOOL(panel.find<ctkCollapsibleButton>("WhatToShow")->collapsed(), false);
+  for (const char* closed : {"Materials", "ViewAndLight", "Quality", "Turntable", "Images"})
+    CHECK_BOOL(panel.find<ctkCollapsibleButton>(closed)->collapsed(), true);
+  std::cout << "height of the panel: " << panel.widget->sizeHint().height() << '\n';
+  CHECK_BOOL(panel.widget->sizeHint().height() < 1000, true);
+  return EXIT_SUCCESS;
+}
+
+/// A disabled control says what enables it.
+int checkReasons(const Panel& panel) {
+  int disabled = 0;
+  for (const QWidget* one : panel.widget->findChildren<QWidget*>()) {
+    const bool isControl = one->focusPolicy() != Qt::NoFocus && !one->objectName().isEmpty() &&
+                           !one->objectName().startsWith("qt_");
+    if (!isControl || !one->testAttribute(Qt::WA_ForceDisabled))
+      continue;
+    ++disabled;
+    const QVariant help = one->property("FenestraHelp"); // tool tip of the enabled control
+    if (!help.isValid() || one->toolTip().isEmpty() || one->toolTip() == help.toString()) {
+      std::cerr << one->objectName().toStdString() << " is gray without a reason\n";
+      return EXIT_FAILURE;
+    }
+  }
+  CHECK_BOOL(disabled >= 5, true);
+  return EXIT_SUCCESS;
+}
+
+template <typename Control>
+int checkNames(const Panel& panel) {
+  for (Control* one : panel.widget->findChildren<Control*>()) {
+    QAccessibleInterface* interface = QAccessible::queryAccessibleInterface(one);
+    const bool isPart = one->objectName().startsWith("qt_"); // the text of a number
+    if (!isPart && one->focusPolicy() != Qt::NoFocus &&
+        interface->text(QAccessible::Name).isEmpty()) {
+      std::cerr << one->metaObject()->className() << ' ' << one->objectName().toStdString()
+                << " in " << one->parentWidget()->objectName().toStdString() << " has no name\n";
+      return EXIT_FAILURE;
+    }
+  }
+  return EXIT_SUCCESS;
+}
+
+/// The list shows all of a few segments without scrolling, then grows no further.
+int checkList(const Panel& panel, vtkSegmentation* segments) {
+  const QListWidget& list = *panel.find<QListWidget>("FocusList");
+  const auto countVisible = [&list] { return list.height() / list.sizeHintForRow(0); };
+  while (segments->GetNumberOfSegments() < 10)
+    segments->AddEmptySegment();
+  CHECK_INT(list.count(), 10);
+  CHECK_INT(countVisible(), 10);
+  while (segments->GetNumberOfSegments() < 40)
+    segments->AddEmptySegment();
+  CHECK_INT(countVisible(), 12);
+  return EXIT_SUCCESS;
+}
+
+/// The filter hides segments in the list, and leaves the focus unchanged.
+int checkFilter(const Panel& panel) {
+  QListWidget& list = *panel.find<QListWidget>("FocusList");
+  CHECK_INT(list.count(), 2);
+  list.item(0)->setCheckState(Qt::Checked);
+  const std::vector<std::string> focus = panel.settings()->GetFocus();
+  CHECK_INT(static_cast<int>(focus.size()), 1);
+  auto* filter = panel.find<QLineEdit>("FocusFilter");
+  filter->setText("NOTH");
+  CHECK_BOOL(list.item(0)->isHidden(), true);
+  CHECK_BOOL(list.item(1)->isHidden(), false);
+  list.item(1)->setCheckState(Qt::Checked); // writes the focus
+  list.item(1)->setCheckState(Qt::Unchecked);
+  CHECK_BOOL(panel.settings()->GetFocus() == focus, true);
+  CHECK_BOOL(list.item(0)->isHidden(), true);
+  filter->clear();
+  CHECK_BOOL(list.item(0)->isHidden(), false);
+  return EXIT_SUCCESS;
+}
+
+/// The click itself shows that the sample is being generated.
+int checkSample(const Panel& panel) {
+  auto* sample = panel.find<QAbstractButton>("SampleButton");
+  auto* progress = panel.find<QProgressBar>("ProgressBar");
+  CHECK_BOOL(progress->isHidden(), true);
+  sample->click();
+  CHECK_BOOL(progress->isHidden(), false);
+  CHECK_INT(progress->maximum(), 0); // busy
+  CHECK_BOOL(sample->isEnabled(), false);
+  const auto isReady = [&] { return sample->isEnabled(); };
+  CHECK_BOOL(waitFor(isReady) || waitFor(isReady), true);
+  CHECK_BOOL(progress->isHidden(), true);
+  CHECK_INT(progress->maximum(), 1000);
+  return EXIT_SUCCESS;
+}
+
+} // namespace
+
+int qSlicerFenestraPanelTest1(int argc, char* argv[]) {
+  qSlicerApplication application(argc, argv);
+  if (argc < 4)
+    return EXIT_FAILURE;
+  qSlicerFenestraModule module;
+  module.setName("Fenestra");
+  module.setPath(argv[3]);
+  module.initialize(application.applicationLogic());
+  vtkMRMLScene* scene = application.mrmlScene();
+  module.setMRMLScene(scene);
+  const QScopedPointer<qSlicerFenestraModuleWidget> owner(
+      dynamic_cast<qSlicerFenestraModuleWidget*>(module.widgetRepresentation()));
+  CHECK_NOT_NULL(owner.data());
+  const Panel panel{owner.data(), vtkSlicerFenestraLogic::SafeDownCast(module.logic())};
+  bool hasAnswer = false;
+  QObject::connect(owner->session(), &qSlicerFenestraSession::capabilitiesReceived,
+                   [&] { hasAnswer = true; });
+  owner->enter();
+  CHECK_BOOL(waitFor([&] { return hasAnswer; }), true);
+  CHECK_EXIT_SUCCESS(checkSections(panel));
+  CHECK_EXIT_SUCCESS(checkReasons(panel));
+  FenestraTesting::addVolume(scene);
+  vtkMRMLSegmentationNode* segmentation = FenestraTesting::addSegmentation(scene);
+  owner->exit();
+  owner->enter();
+  CHECK_EXIT_SUCCESS(checkSections(panel));
+  CHECK_EXIT_SUCCESS(checkReasons(panel));
+  CHECK_EXIT_SUCCESS(checkFilter(panel));
+  CHECK_EXIT_SUCCESS(checkNames<QAbstractButton>(panel));
+  CHECK_EXIT_SUCCESS(checkNames<QAbstractSlider>(panel));
+  CHECK_EXIT_SUCCESS(checkNames<QAbstractSpinBox>(panel));
+  CHECK_EXIT_SUCCESS(checkNames<QComboBox>(panel));
+  CHECK_EXIT_SUCCESS(checkNames<QLineEdit>(panel));
+  CHECK_EXIT_SUCCESS(checkNames<QListWidget>(panel));
+  CHECK_EXIT_SUCCESS(checkNames<QTableWidget>(panel));
+  panel.choose("ViewBox", "left");
+  CHECK_EXIT_SUCCESS(checkReasons(panel));
+  panel.find<QSpinBox>("SamplesBox")->setValue(1);
+  panel.find<QSpinBox>("WidthBox")->setValue(16);
+  panel.find<QSpinBox>("HeightBox")->setValue(16);
+  auto* button = panel.find<QAbstractButton>("RenderButton");
+  CHECK_BOOL(endsOneRender(panel, [&] { button->click(); }), true);
+  CHECK_BOOL(panel.find<ctkCollapsibleButton>("Images")->collapsed(), false);
+  CHECK_EXIT_SUCCESS(checkList(panel, segmentation->GetSegmentation()));
+  scene->Clear(false);
+  CHECK_EXIT_SUCCESS(checkSample(panel));
+  owner->exit();
+  return EXIT_SUCCESS;
+}
