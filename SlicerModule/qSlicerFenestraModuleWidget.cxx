@@ -153,6 +153,10 @@ void qSlicerFenestraModuleWidget::connectSession() {
           [d](const QString& text) { d->samplesAndNoise = text; });
   connect(d->session, &Session::progressed, this,
           [this](Node*, double fraction, double seconds) { onProgress(fraction, seconds); });
+  connect(d->session, &Session::sampleProgressed, this, [d](double seconds) {
+    d->setStatus(tr("Generating the synthetic knee: %1")
+                     .arg(qSlicerFenestraMeasures::formatDuration(seconds)));
+  });
   connect(d->session, &Session::ended, this, &qSlicerFenestraModuleWidget::onEnded);
 }
 
@@ -241,20 +245,17 @@ void qSlicerFenestraModuleWidget::start(qSlicerFenestraSession::Kind kind) {
   updateButtons();
 }
 
-/// Shows the result twice: a view that the layout just created fits the image only once the view
-/// has its size.
-void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
+/// Shows the result after the current event, which may still change the layout.
+void qSlicerFenestraModuleWidget::showResult(Node* render) {
   Q_D(qSlicerFenestraModuleWidget);
   const vtkWeakPointer<Node> shown = render;
-  QTimer::singleShot(0, this, [this, d, shown, times] {
+  QTimer::singleShot(0, this, [this, d, shown] {
     if (!shown || !shown->GetScene())
       return;
     fenestraLogic()->ShowResult(shown);
     if (shown == d->chosenRender() && shown->IsTurntable())
       fenestraLogic()->ShowFrame(shown, d->Player->frame());
     updateButtons(); // Back
-    if (times > 1)
-      showResult(shown, times - 1);
   });
 }
 
@@ -446,6 +447,4 @@ void qSlicerFenestraModuleWidgetPrivate::setLoading(bool isLoading) {
   Settings->setSampleEnabled(!isLoading);
   ProgressBar->setMaximum(isLoading ? 0 : 1000); // 0: busy
   ProgressBar->setVisible(isLoading);
-  if (isLoading)
-    setStatus(tr("Generating the synthetic knee..."));
 }
