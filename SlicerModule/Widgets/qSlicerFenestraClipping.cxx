@@ -89,6 +89,7 @@ qSlicerFenestraClipping::qSlicerFenestraClipping(QWidget* parent)
     : qMRMLWidget(parent), d_ptr(new qSlicerFenestraClippingPrivate) {
   Q_D(qSlicerFenestraClipping);
   d->setupUi(this);
+  d->ClipDetails->setCollapsed(true); // after its title is set, which gives the height
   setItemData(d->ClipBox, {"", "ghost", "cutaway", "hole", "plane", "none"});
   setItemData(d->BoundaryBox, {"exact", "spline"});
   setItemData(d->HoleBox, {"", "box", "sphere"});

@@ -110,6 +110,7 @@ void qSlicerFenestraMargins::build(const QList<qSlicerFenestraSegment>& focus) {
             });
     auto* name = new QLabel(segment.name + ":");
     name->setWordWrap(true);
+    name->setBuddy(box);
     d->Rows->addRow(name, box);
     d->boxes << box;
   }

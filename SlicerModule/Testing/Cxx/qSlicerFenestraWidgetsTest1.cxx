@@ -192,7 +192,10 @@ int checkPreview() {
 /// Numbers that may be "auto" can be set by the keyboard alone.
 int checkAutomatic() {
   Clipping clipping;
-  clipping.findChild<ctkCollapsibleGroupBox*>("ClipDetails")->setCollapsed(false); // enables them
+  auto* details = clipping.findChild<ctkCollapsibleGroupBox*>("ClipDetails");
+  CHECK_BOOL(details->collapsed(), true);
+  CHECK_BOOL(details->maximumHeight() > details->fontMetrics().height() + 8, true); // its title
+  details->setCollapsed(false);                                                     // enables them
   const QList<qSlicerFenestraSegment> focus = {{"A", "A"}};
   const auto taken = [&clipping](const char* flag) {
     Flags flags;
