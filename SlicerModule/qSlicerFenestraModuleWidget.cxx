@@ -25,6 +25,7 @@
 namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
+using qSlicerFenestraMeasures::formatDuration;
 
 /// Size with the aspect ratio of the first 3D view and about `side` x `side` pixels; empty: no
 /// view.
@@ -154,8 +155,7 @@ void qSlicerFenestraModuleWidget::connectSession() {
   connect(d->session, &Session::progressed, this,
           [this](Node*, double fraction, double seconds) { onProgress(fraction, seconds); });
   connect(d->session, &Session::sampleProgressed, this, [d](double seconds) {
-    d->setStatus(tr("Generating the synthetic knee: %1")
-                     .arg(qSlicerFenestraMeasures::formatDuration(seconds)));
+    d->setStatus(tr("Generating the synthetic knee: %1").arg(formatDuration(seconds)));
   });
   connect(d->session, &Session::ended, this, &qSlicerFenestraModuleWidget::onEnded);
 }
@@ -245,17 +245,20 @@ void qSlicerFenestraModuleWidget::start(qSlicerFenestraSession::Kind kind) {
   updateButtons();
 }
 
-/// Shows the result after the current event, which may still change the layout.
-void qSlicerFenestraModuleWidget::showResult(Node* render) {
+/// Shows the result twice: the slider of a view that the layout just created moves the plane 50 ms
+/// later. The second time, another image may be shown already.
+void qSlicerFenestraModuleWidget::showResult(Node* render, bool again) {
   Q_D(qSlicerFenestraModuleWidget);
   const vtkWeakPointer<Node> shown = render;
-  QTimer::singleShot(0, this, [this, d, shown] {
-    if (!shown || !shown->GetScene())
+  QTimer::singleShot(again ? 100 : 0, this, [this, d, shown, again] {
+    if (!shown || !shown->GetScene() || (again && fenestraLogic()->GetShownRender() != shown))
       return;
     fenestraLogic()->ShowResult(shown);
     if (shown == d->chosenRender() && shown->IsTurntable())
       fenestraLogic()->ShowFrame(shown, d->Player->frame());
     updateButtons(); // Back
+    if (!again)
+      showResult(shown, true);
   });
 }
 
@@ -285,10 +288,9 @@ void qSlicerFenestraModuleWidgetPrivate::showPreviewImage(const QImage& image,
                                                           const qFenestraPreviewImage& info) {
   PreviewLabel->setPixmap(QPixmap::fromImage(image));
   const QString noise = info.noise < 0.0 ? QString() : tr(", noise %1").arg(info.noise, 0, 'g', 2);
-  PreviewStateLabel->setText(
-      tr("Preview: %1 samples per pixel%2, %3")
-          .arg(info.samples)
-          .arg(noise, qSlicerFenestraMeasures::formatDuration(info.seconds)));
+  PreviewStateLabel->setText(tr("Preview: %1 samples per pixel%2, %3")
+                                 .arg(info.samples)
+                                 .arg(noise, formatDuration(info.seconds)));
 }
 
 /// Updates at most once per `interval`: Slicer's window redraws slowly without a GPU.
@@ -300,11 +302,9 @@ void qSlicerFenestraModuleWidget::onProgress(double fraction, double seconds) {
   d->progressAge.start();
   d->ProgressBar->show();
   d->ProgressBar->setValue(static_cast<int>(1000.0 * fraction));
-  QString line = tr("%1 elapsed").arg(qSlicerFenestraMeasures::formatDuration(seconds));
+  QString line = tr("%1 elapsed").arg(formatDuration(seconds));
   if (fraction > 0.01)
-    line +=
-        tr(", %1 left")
-            .arg(qSlicerFenestraMeasures::formatDuration(seconds * (1.0 - fraction) / fraction));
+    line += tr(", %1 left").arg(formatDuration(seconds * (1.0 - fraction) / fraction));
   if (!d->samplesAndNoise.isEmpty())
     line += ", " + d->samplesAndNoise;
   if (d->session->waitingCount() > 0)

@@ -129,7 +129,7 @@ bool qSlicerFenestraTour::chooseCartilage() {
   if (!waitFor([&] { return m_previews > before; }))
     return false;
   m_measurements["previewAfterFocusMs"] = static_cast<int>(watch.elapsed());
-  wait(3000);
+  wait(8000); // that preview may still be one of the old focus
   m_measurements["longestPauseWhilePreviewingMs"] = m_pulse.longest();
   takeScreenshot("4-focus");
   return true;
