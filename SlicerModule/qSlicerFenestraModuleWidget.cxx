@@ -245,20 +245,17 @@ void qSlicerFenestraModuleWidget::start(qSlicerFenestraSession::Kind kind) {
   updateButtons();
 }
 
-/// Shows the result twice: the slider of a view that the layout just created moves the plane 50 ms
-/// later. The second time, another image may be shown already.
-void qSlicerFenestraModuleWidget::showResult(Node* render, bool again) {
+/// Shows the result after the current event, which may still change the layout.
+void qSlicerFenestraModuleWidget::showResult(Node* render) {
   Q_D(qSlicerFenestraModuleWidget);
   const vtkWeakPointer<Node> shown = render;
-  QTimer::singleShot(again ? 100 : 0, this, [this, d, shown, again] {
-    if (!shown || !shown->GetScene() || (again && fenestraLogic()->GetShownRender() != shown))
+  QTimer::singleShot(0, this, [this, d, shown] {
+    if (!shown || !shown->GetScene())
       return;
     fenestraLogic()->ShowResult(shown);
     if (shown == d->chosenRender() && shown->IsTurntable())
       fenestraLogic()->ShowFrame(shown, d->Player->frame());
     updateButtons(); // Back
-    if (!again)
-      showResult(shown, true);
   });
 }
 

@@ -63,7 +63,7 @@ private:
   void start(qSlicerFenestraSession::Kind kind);
   void onProgress(double fraction, double seconds);
   void onEnded(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
-  void showResult(vtkMRMLFenestraRenderNode* render, bool again = false);
+  void showResult(vtkMRMLFenestraRenderNode* render);
 };
 
 #endif
