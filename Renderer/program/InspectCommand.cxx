@@ -23,11 +23,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Row = std::vector<std::string>;
 
-constexpr std::size_t width = 100; ///< characters per line
-constexpr std::size_t longestName = 36, longestId = 48, longestFile = 90;
+constexpr std::size_t width = 100, longestName = 36, longestId = 48, longestFile = 90; // characters
 constexpr std::size_t maxNodes = 20, maxSegments = 100; ///< listed individually
-
-// ---- text
 
 bool isCharacterStart(char c) { // in UTF-8
   return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
