@@ -3,6 +3,7 @@
 # above it, so there are no cycles.
 # usage: cmake -DRENDERER=FOLDER -P Layers.cmake
 cmake_minimum_required(VERSION 3.25)
+include("${CMAKE_CURRENT_LIST_DIR}/RendererSources.cmake")
 set(folders)
 set(errors)
 
@@ -21,7 +22,6 @@ foreach(row IN LISTS rows)
   list(APPEND folders ${folder})
 endforeach()
 
-file(GLOB_RECURSE sources RELATIVE "${RENDERER}" "${RENDERER}/*.h" "${RENDERER}/*.cxx")
 foreach(source IN LISTS sources)
   get_filename_component(folder ${source} DIRECTORY)
   if(NOT folder IN_LIST folders)
@@ -38,9 +38,4 @@ foreach(source IN LISTS sources)
   endforeach()
 endforeach()
 
-list(LENGTH sources count)
-if(errors OR count LESS 100)
-  list(JOIN errors "\n" text)
-  message("${text}")
-  message(FATAL_ERROR "${RENDERER}: ${count} sources; fix the above, or the table")
-endif()
+report_errors("${errors}" "fix the above, or the table")
