@@ -76,10 +76,11 @@ VolumeProperty fetusProperty() {
 
 } // namespace
 
-Phantom makeFetusPhantom(const Size3& size) {
+Phantom makeFetusPhantom(const Size3& size, const PhantomProgress& progress) {
   constexpr Mat3 axes({-1, 0, 0}, {0, -1, 0}, {0, 0, 1}); // columns: left, posterior, superior
-  Phantom phantom = paintPhantom(
-      FetusSubject(), makePhantomGrid(size, fetusFieldOfView, axes, fetusFieldCenter), "fetus");
+  Phantom phantom =
+      paintPhantom(FetusSubject(), makePhantomGrid(size, fetusFieldOfView, axes, fetusFieldCenter),
+                   "fetus", progress);
   phantom.property = fetusProperty();
   phantom.towardViewer = {0.35, 1.0, 0.15};
   return phantom;

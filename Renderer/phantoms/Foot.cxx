@@ -190,10 +190,11 @@ void FootSubject::addSoftTissue() {
   addLayer(addSegment("skin", "Skin", skinColor), makeConstant(35.0), everywhere, makeInset(0.0));
 }
 
-Phantom makeFootPhantom(const Size3& size) {
+Phantom makeFootPhantom(const Size3& size, const PhantomProgress& progress) {
   constexpr Mat3 axes({0, 1, 0}, {-1, 0, 0}, {0, 0, 1}); // columns: anterior, left, superior
-  Phantom phantom = paintPhantom(
-      FootSubject(), makePhantomGrid(size, footFieldOfView, axes, footFieldCenter), "foot");
+  Phantom phantom =
+      paintPhantom(FootSubject(), makePhantomGrid(size, footFieldOfView, axes, footFieldCenter),
+                   "foot", progress);
   addThresholdedBones(phantom);
   phantom.property = footProperty();
   phantom.towardViewer = {-0.9, 0.75, 0.75}; // medial, anterior, above

@@ -320,10 +320,11 @@ VolumeProperty kneeProperty() {
 
 } // namespace
 
-Phantom makeKneePhantom(const Size3& size) {
+Phantom makeKneePhantom(const Size3& size, const PhantomProgress& progress) {
   constexpr Mat3 axes({0, -1, 0}, {0, 0, -1}, {1, 0, 0}); // columns: posterior, inferior, right
-  Phantom phantom = paintPhantom(
-      KneeSubject(), makePhantomGrid(size, kneeFieldOfView, axes, kneeFieldCenter), "knee");
+  Phantom phantom =
+      paintPhantom(KneeSubject(), makePhantomGrid(size, kneeFieldOfView, axes, kneeFieldCenter),
+                   "knee", progress);
   phantom.property = kneeProperty();
   return phantom;
 }

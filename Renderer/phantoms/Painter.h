@@ -6,6 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <atomic>
 #include <functional>
 
 namespace fenestra {
@@ -179,12 +180,14 @@ private:
 /// Paints the subject's volume, called `name`, and one layer of labels on the complete grid. The
 /// result does not depend on run or number of threads.
 template <typename Subject>
-Phantom paintPhantom(const Subject& subject, const Grid& grid, const std::string& name) {
+Phantom paintPhantom(const Subject& subject, const Grid& grid, const std::string& name,
+                     const PhantomProgress& progress) {
   const Painter painter(subject, grid);
   const auto count = static_cast<std::size_t>(grid.voxelCount());
   LargeArray<std::int16_t> voxels(count);
   std::vector<std::uint8_t> labels(count);
   const Size3& size = grid.size;
+  std::atomic<std::int64_t> finishedSlices = 0;
   tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t k) {
     for (std::int64_t j = 0; j < size.y(); ++j) {
       const Vec3 start = grid.indexToWorld * Size3{0, j, k}.cast<double>();
@@ -197,6 +200,9 @@ Phantom paintPhantom(const Subject& subject, const Grid& grid, const std::string
         labels[at] = sample.label;
       }
     }
+    const std::int64_t finished = ++finishedSlices;
+    if (progress)
+      progress(static_cast<double>(finished) / static_cast<double>(size.z()));
   });
   Phantom phantom;
   phantom.volume.grid = grid;

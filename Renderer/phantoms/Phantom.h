@@ -6,6 +6,7 @@
 #include "model/volume/Volume.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ struct Phantom {
   /// Direction from the subject to a viewpoint with a good view, superior being up; world.
   Vec3 towardViewer = Vec3{-0.35, 1.0, 0.25};
 };
+
+/// Is told the finished fraction of the voxels, above 0 to 1, from any thread, also several at a
+/// time.
+using PhantomProgress = std::function<void(double)>;
 
 /// Grid of `size` voxels around `center` (world). `fieldOfView`: mm along the voxel axes; the
 /// columns of `axes` are their unit directions in the world. Throws Error (request) unless each

@@ -12,19 +12,19 @@ inline constexpr Size3 kneeSize{300, 344, 120}, footSize{300, 120, 150}, fetusSi
 /// posterior, inferior and right; field of view: 120 x 137.6 x 120 mm. The femoral cartilage has a
 /// full-thickness lesion on the medial slope of the trochlea and a half-thickness lesion on the
 /// lateral condyle.
-Phantom makeKneePhantom(const Size3& size = kneeSize);
+Phantom makeKneePhantom(const Size3& size = kneeSize, const PhantomProgress& progress = {});
 
 /// Right foot as in CT, in Hounsfield units. Voxel axes point anterior, left and superior; field of
 /// view: 280 x 112 x 140 mm. Layer 0 has a segment for each of the foot's 26 bones, the ends of
 /// tibia and fibula, and the soft tissues; layer 1 has the segment "bones": all voxels of at least
 /// 200 HU.
-Phantom makeFootPhantom(const Size3& size = footSize);
+Phantom makeFootPhantom(const Size3& size = footSize, const PhantomProgress& progress = {});
 
 /// Head of a fetus of about 28 weeks as in obstetric ultrasound from the front. Voxel axes point
 /// left, posterior and superior; field of view: 112 x 112 x 112 mm. Values are 0 to 255, with
 /// speckle and attenuation. The face, with a hand beside it, is one segment; the uterine wall and a
 /// loop of the cord hide it from the front.
-Phantom makeFetusPhantom(const Size3& size = fetusSize);
+Phantom makeFetusPhantom(const Size3& size = fetusSize, const PhantomProgress& progress = {});
 
 struct CubeOptions {
   double edge = 1.0;       ///< mm; the published model is a unit cube

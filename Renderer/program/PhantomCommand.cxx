@@ -5,9 +5,11 @@
 #include "phantoms/Phantoms.h"
 #include "program/CommandLine.h"
 #include "program/Messages.h"
+#include "program/ProgressView.h"
 #include "program/UsageError.h"
 
 #include <cstdio>
+#include <mutex>
 
 namespace fenestra {
 namespace {
@@ -49,18 +51,55 @@ Phantom makeCube(const OptionValues& values) {
   return makeCubePhantom(options);
 }
 
-Phantom makePhantom(const std::string& kind, const OptionValues& values) {
+/// Progress line on a terminal, from construction to destruction.
+class PhantomBar {
+public:
+  explicit PhantomBar(bool isQuiet)
+      : m_view(isQuiet ? ProgressMode::none : ProgressMode::automatic, "Phantom") {}
+  ~PhantomBar() { m_view.show(1.0, {}, true); }
+  PhantomBar(const PhantomBar&) = delete;
+  PhantomBar& operator=(const PhantomBar&) = delete;
+
+  /// `fraction` of the voxels; from any thread.
+  void showVoxels(double fraction) { show(voxelShare * fraction, "voxels"); }
+  void showWriting() { show(voxelShare, "writing files"); }
+
+private:
+  static constexpr double voxelShare = 0.9; ///< of the time; the files take the rest
+
+  void show(double fraction, const char* step) {
+    const std::lock_guard lock(m_mutex);
+    m_view.show(fraction, {step}, false);
+  }
+
+  ProgressView m_view;
+  std::mutex m_mutex;
+};
+
+Phantom makePhantom(const std::string& kind, const OptionValues& values,
+                    const PhantomProgress& progress) {
   if (kind != "cube" && values.has("edge"))
     throw usageError("--edge: only for the cube; omit it, or use phantom cube");
   if (kind == "knee")
-    return makeKneePhantom(readGridSize(values, kneeSize));
+    return makeKneePhantom(readGridSize(values, kneeSize), progress);
   if (kind == "foot")
-    return makeFootPhantom(readGridSize(values, footSize));
+    return makeFootPhantom(readGridSize(values, footSize), progress);
   if (kind == "fetus")
-    return makeFetusPhantom(readGridSize(values, fetusSize));
+    return makeFetusPhantom(readGridSize(values, fetusSize), progress);
   if (kind == "cube")
     return makeCube(values);
   throw usageError("KIND: '" + kind + "' is unknown; use knee, foot, fetus or cube");
+}
+
+/// Writes the files, and shows progress. Returns the files' names and the number of segments.
+std::string createPhantom(const std::string& kind, const OptionValues& values,
+                          const std::string& folder) {
+  PhantomBar bar(values.has("quiet"));
+  const Phantom phantom =
+      makePhantom(kind, values, [&bar](double fraction) { bar.showVoxels(fraction); });
+  bar.showWriting();
+  const std::vector<std::string> files = writePhantom(phantom, folder, kind);
+  return concat(join(files, " "), ", ", phantom.segments.size(), " segments");
 }
 
 } // namespace
@@ -87,10 +126,10 @@ int phantomCommand(int argc, char** argv, int first) {
   const std::string kind = *values->text("KIND");
   const std::string folder = values->text("output").value_or(kind);
   configureMachine(*values);
-  const Phantom phantom = makePhantom(kind, *values);
-  const std::vector<std::string> files = writePhantom(phantom, folder, kind);
+  const Stopwatch watch;
+  const std::string result = createPhantom(kind, *values, folder);
   if (!values->has("quiet"))
-    printLine(concat(folder, ": ", join(files, " "), ", ", phantom.segments.size(), " segments"));
+    printLine(concat(folder, ": ", result, ", ", toString(watch.seconds(), 3), " s"));
   return 0;
 }
 

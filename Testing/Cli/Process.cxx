@@ -11,11 +11,13 @@
 #include <regex>
 #include <stdexcept>
 #include <thread>
+#include <tuple>
 
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <termios.h>
 #include <unistd.h>
 
 namespace fenestra {
@@ -57,23 +59,53 @@ void splitResult(Outcome& outcome) {
   ::_exit(127);
 }
 
+/// Opens a terminal that changes no characters. Returns its two ends: ours and the program's.
+std::pair<int, int> openTerminal() {
+  const int ours = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  if (ours < 0 || ::grantpt(ours) != 0 || ::unlockpt(ours) != 0)
+    throw std::runtime_error("cannot open a terminal");
+  const int programs = ::open(::ptsname(ours), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  termios mode = {};
+  if (programs < 0 || ::tcgetattr(programs, &mode) != 0)
+    throw std::runtime_error("cannot open a terminal");
+  ::cfmakeraw(&mode);
+  ::tcsetattr(programs, TCSANOW, &mode);
+  return {ours, programs};
+}
+
+/// Copies until no process has the terminal open any more; closes `terminal`.
+void copyTerminal(int terminal, int file) {
+  char part[1024];
+  for (ssize_t count; (count = ::read(terminal, part, sizeof part)) > 0;)
+    [[maybe_unused]] const auto written = ::write(file, part, static_cast<std::size_t>(count));
+  ::close(terminal);
+}
+
 } // namespace
 
-Process::Process(const Arguments& arguments, const std::filesystem::path& folder, Stdout target)
+Process::Process(const Arguments& arguments, const std::filesystem::path& folder, Stdout out,
+                 Stderr err)
     : m_out(::memfd_create("out", MFD_CLOEXEC)), m_err(::memfd_create("err", MFD_CLOEXEC)) {
   int in[2], unread[2];
   if (m_out < 0 || m_err < 0 || ::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(unread, O_CLOEXEC) != 0)
     throw std::runtime_error("cannot create files for a process");
   ::close(unread[0]);
+  int terminal = -1, shown = m_err;
+  if (err == Stderr::terminal)
+    std::tie(terminal, shown) = openTerminal();
   m_id = ::fork();
   if (m_id < 0)
     throw std::runtime_error("cannot start a process");
   if (m_id == 0)
     execProgram(arguments, folder, in[0],
-                target == Stdout::file         ? m_out
-                : target == Stdout::closedPipe ? unread[1]
-                                               : ::open("/dev/full", O_WRONLY),
-                m_err);
+                out == Stdout::file         ? m_out
+                : out == Stdout::closedPipe ? unread[1]
+                                            : ::open("/dev/full", O_WRONLY),
+                shown);
+  if (terminal >= 0) {
+    ::close(shown);
+    m_terminal = std::jthread(copyTerminal, terminal, m_err);
+  }
   ::close(in[0]);
   ::close(unread[1]);
   m_in = in[1];
@@ -84,6 +116,8 @@ Process::~Process() {
     ::kill(m_id, SIGKILL);
     reap(0);
   }
+  if (m_terminal.joinable())
+    m_terminal.join();
   closeInput();
   ::close(m_out);
   ::close(m_err);
@@ -166,6 +200,8 @@ Outcome Process::wait() {
     ::kill(m_id, SIGKILL);
     reap(0);
   }
+  if (m_terminal.joinable())
+    m_terminal.join();
   Outcome outcome;
   outcome.cpuSeconds = m_cpuSeconds - before;
   if (WIFEXITED(m_waitStatus))

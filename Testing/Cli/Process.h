@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace fenestra {
@@ -23,11 +24,15 @@ struct Outcome {
 /// device on which every write fails for lack of space.
 enum class Stdout { file, closedPipe, fullDisk };
 
+/// Target of standard error: a file or a terminal of 80 columns, of which the test reads the
+/// output.
+enum class Stderr { file, terminal };
+
 /// Process `fenestra arguments…` in `folder`. The constructor starts it, the destructor kills it.
 class Process {
 public:
   Process(const Arguments& arguments, const std::filesystem::path& folder,
-          Stdout target = Stdout::file);
+          Stdout out = Stdout::file, Stderr err = Stderr::file);
   ~Process();
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
@@ -64,6 +69,7 @@ private:
   int m_id = 0;
   int m_in = -1;              ///< pipe to standard input
   int m_out = -1, m_err = -1; ///< memory files for standard output and standard error
+  std::jthread m_terminal;    ///< copies what the terminal shows to m_err
   mutable int m_waitStatus = 0;
   mutable double m_cpuSeconds = 0.0; ///< of the ended process and its children
   mutable bool m_ended = false;

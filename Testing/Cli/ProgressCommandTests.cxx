@@ -2,6 +2,8 @@
 
 #include "CommandTesting.h"
 
+#include <regex>
+
 namespace fenestra::ProgressCommandTests {
 namespace {
 
@@ -52,6 +54,28 @@ TEST_F(ProgressCommand, BarIsErasedFromStandardError) {
   std::istringstream lines(outcome.err);
   for (std::string line; std::getline(lines, line, '\r');)
     EXPECT_LE(line.size(), 79 + std::string("\x1b[K").size()) << line;
+}
+
+/// Without options, each command shows one line that it updates and erases, then its result.
+TEST_F(ProgressCommand, TerminalShowsABarThenTheResult) {
+  const std::vector<std::pair<Arguments, std::string>> commands = {
+      {{"volume.nrrd", "--size", "32x32", "--seconds", "0.5"}, "volume.png: "},
+      {{"phantom", "knee", "--size", "60x68x24"}, "knee: "},
+      {{"phantom", "foot", "--size", "60x24x30"}, "foot: "},
+      {{"phantom", "fetus", "--size", "32x32x32"}, "fetus: "}};
+  for (const auto& [arguments, result] : commands) {
+    Process process(arguments, folder.path(), Stdout::file, Stderr::terminal);
+    const Outcome outcome = process.wait();
+    ASSERT_EQ(outcome.status, 0) << outcome.messages;
+    EXPECT_EQ(outcome.out, "");
+    const std::regex bars(R"((\r\x1b\[K\[#*\.*\] +\d+ %  [^\r\n]* left[^\r\n]*){3,}\r\x1b\[K)");
+    EXPECT_TRUE(std::regex_match(outcome.err, bars)) << outcome.err;
+    EXPECT_TRUE(outcome.result.starts_with(result)) << outcome.result;
+
+    Arguments quiet = arguments;
+    quiet.push_back("--quiet");
+    EXPECT_EQ(Process(quiet, folder.path(), Stdout::file, Stderr::terminal).wait().messages, "");
+  }
 }
 
 TEST_F(ProgressCommand, NoProgressIsWrittenWithoutATerminal) {
