@@ -46,7 +46,9 @@ std::string suggestOption(const CommandSyntax& syntax, std::string_view given) {
   std::vector<Option> options = listOptions(syntax);
   std::ranges::copy(commonOptions, std::back_inserter(options));
   const std::string bare(name.substr(0, name.find('=')));
-  const std::string likely = findLikelyOption(toLower(bare), options);
+  constexpr std::string_view sizeElsewhere[] = {"resolution", "width", "height"}; // f3d, Blender
+  const bool isSize = std::ranges::find(sizeElsewhere, bare) != std::end(sizeElsewhere);
+  const std::string likely = findLikelyOption(isSize ? "size" : toLower(bare), options);
   if (!likely.empty())
     return concat("; did you mean --", likely, "?");
   if (given.starts_with("--") || name.empty())
@@ -65,10 +67,15 @@ Error makeUnknownOptionError(const CommandSyntax& syntax, std::string_view given
 Error makeExtraArgumentError(const CommandSyntax& syntax, std::string_view given) {
   const Option* const output = findOption(syntax.options, "output");
   const bool isImage = output && output->canNameFile() && findImageFormat(given);
+  std::error_code failed;
+  const bool isLabelMap = findOption(syntax.options, "segmentation") &&
+                          (!isImage || given.ends_with(".nrrd")) &&
+                          std::filesystem::is_regular_file(given, failed);
   return usageError("'", given, "': unexpected argument after ",
                     join(syntax.positionals, " and ", std::mem_fn(&Positional::name)),
-                    isImage ? "; to write an image, add -o before it"
-                            : "; quote names that contain blanks",
+                    isLabelMap ? "; to use it as the segmentation, add -s before it"
+                    : isImage  ? "; to write an image, add -o before it"
+                               : "; quote names that contain blanks",
                     formatHelpHint(syntax));
 }
 

@@ -28,9 +28,9 @@ constexpr Command subcommands[] = {
     {describeSyntax, describeCommand},
 };
 
-/// Throws Error (usage) for a word that names no file but resembles a command.
+/// Throws Error (usage) for a word that names no file but resembles a command, or --version.
 void rejectMisspelled(std::string_view word) {
-  std::vector<std::string> names;
+  std::vector<std::string> names = {"--version"};
   for (const Command& command : commands())
     names.push_back(command.syntax().name);
   const std::string likely = findNearest(word, names);
