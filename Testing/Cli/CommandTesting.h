@@ -118,6 +118,18 @@ inline void expectStated(const std::string& message, const std::string& expected
   }
 }
 
+/// Expects that the first numbers after the first ": " are `counts`. Words are not compared.
+inline void expectCounts(const std::string& text, const std::vector<int>& counts) {
+  std::vector<int> found;
+  std::size_t at = std::min(text.size(), text.find(": "));
+  while (found.size() < counts.size() &&
+         (at = text.find_first_of("0123456789", at)) != std::string::npos) {
+    found.push_back(std::atoi(text.c_str() + at));
+    at = text.find_first_not_of("0123456789", at);
+  }
+  EXPECT_EQ(found, counts) << text;
+}
+
 /// Expects one line on standard error: an error that states `expected`.
 inline void expectErrorLine(const std::string& err, const std::string& expected) {
   const std::string start = "fenestra: error: ";

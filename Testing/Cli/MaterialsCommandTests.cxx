@@ -160,11 +160,10 @@ TEST_F(MaterialsCommand, ContextOfAFileAppliesAroundAFocus) {
   folder.write("given.json", R"({"version": 1, )" + context);
   folder.write("contrast.json", R"({"version": 1, "contrast": true, )" + context);
   const auto renderContrast = [&](const std::string& materials) {
-    Arguments arguments = makeArguments({"--focus", "A", "--materials", materials, "--stats-json",
-                                         "s.json", "--output", "a.png", "--verbose"});
+    Arguments arguments = makeArguments(
+        {"--focus", "A", "--materials", materials, "--stats-json", "s.json", "--output", "a.png"});
     const Outcome outcome = run(arguments, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("\ncontrast of "), std::string::npos) << outcome.err;
     return nlohmann::json::parse(readBytes(folder / "s.json")).at("contrast");
   };
   for (const char* file : {"given.json", "contrast.json"}) {
@@ -267,8 +266,8 @@ TEST_F(MaterialsCommand, StoredMaterialsReproduceTheImage) {
     all.insert(all.end(), {"--output", "a.exr"});
     const Outcome outcome = run(all, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE((outcome.err + "$").find(warning.empty() ? "$" : warning), std::string::npos)
-        << outcome.err;
+    expectStated(outcome.err, warning);
+    EXPECT_EQ(outcome.err.empty(), warning.empty()) << outcome.err;
     return readImage(folder / "a.exr").channels;
   };
   const Arguments small = {"plain.mrml", "--size", "8x8", "--samples", "2"};
@@ -290,9 +289,7 @@ TEST_F(MaterialsCommand, StoredMaterialsReproduceTheImage) {
             renderScene(makeArguments({"--materials", "library"})))
       << "--materials also replaces the stored changes of segments";
   EXPECT_EQ(renderScene({"library.mrml", "--materials", "none"}), none);
-  EXPECT_EQ(
-      renderScene({"file.mrml"}, "materials \"mine.json\" names a file, which a scene must not"),
-      none);
+  EXPECT_EQ(renderScene({"file.mrml"}, " | materials | mine.json"), none);
 }
 
 TEST_F(MaterialsCommand, ServeAcceptsAListOfChanges) {
@@ -310,7 +307,7 @@ TEST_F(MaterialsCommand, ServeAcceptsAListOfChanges) {
                   folder.path())
           .channels);
   process.write("{\"id\": 2, \"materials\": \"nothing\"}\n");
-  EXPECT_TRUE(process.waitForOutput("\"error\",\"id\":2,\"message\":\"nothing: no such file"))
+  EXPECT_TRUE(process.waitForOutput("\"error\",\"id\":2,\"message\":\"nothing: "))
       << process.output();
 }
 

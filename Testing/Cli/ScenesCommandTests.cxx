@@ -235,7 +235,7 @@ TEST_F(ScenesCommand, FocusIsFoundInTheSceneOrInAFile) {
   const Outcome file =
       with({"--focus", "A", "--segmentation", "segments.seg.nrrd", "--output", "file.exr"});
   EXPECT_EQ(file.status, 3);
-  EXPECT_NE(file.err.find("is not visible"), std::string::npos) << file.err;
+  expectErrorLine(file.err, "focus Bone, left:");
 }
 
 /// Stored options reproduce an image. An option on the command line overrides all stored options of
