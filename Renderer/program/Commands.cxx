@@ -35,7 +35,7 @@ void rejectMisspelled(std::string_view word) {
     names.push_back(command.syntax().name);
   const std::string likely = findNearest(word, names);
   std::error_code failed;
-  if (!likely.empty() && !std::filesystem::exists(word, failed) && !failed)
+  if (!likely.empty() && likely != word && !std::filesystem::exists(word, failed) && !failed)
     throw usageError("'", word, "': neither a file nor a command; did you mean fenestra ", likely,
                      "?");
 }
