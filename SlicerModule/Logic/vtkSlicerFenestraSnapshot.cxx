@@ -36,36 +36,13 @@ std::string Quote(vtkMRMLNode* node) {
   return std::string("\"") + (node->GetName() ? node->GetName() : "") + "\"";
 }
 
-std::string ToNrrdType(int scalarType) {
-  switch (scalarType) {
-  case VTK_CHAR:
-  case VTK_SIGNED_CHAR:
-    return "int8";
-  case VTK_UNSIGNED_CHAR:
-    return "uint8";
-  case VTK_SHORT:
-    return "int16";
-  case VTK_UNSIGNED_SHORT:
-    return "uint16";
-  case VTK_INT:
-    return "int32";
-  case VTK_UNSIGNED_INT:
-    return "uint32";
-  case VTK_LONG:
-    return sizeof(long) == 8 ? "int64" : "int32";
-  case VTK_UNSIGNED_LONG:
-    return sizeof(long) == 8 ? "uint64" : "uint32";
-  case VTK_LONG_LONG:
-    return "int64";
-  case VTK_UNSIGNED_LONG_LONG:
-    return "uint64";
-  case VTK_FLOAT:
-    return "float";
-  case VTK_DOUBLE:
-    return "double";
-  default:
-    return {};
-  }
+/// Empty: not a type of voxels.
+std::string ToNrrdType(vtkDataArray* array) {
+  const int type = array->GetDataType(), bits = 8 * array->GetDataTypeSize();
+  if (type == VTK_FLOAT || type == VTK_DOUBLE)
+    return array->GetDataTypeAsString();
+  const std::string sign = array->GetDataTypeMin() < 0.0 ? "" : "u";
+  return bits == 0 ? std::string() : sign + "int" + std::to_string(bits);
 }
 
 SlicerExport::Matrix ToMatrix(vtkMatrix4x4* matrix) {
@@ -81,7 +58,7 @@ SlicerExport::Image ShareImage(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
   vtkSmartPointer<vtkDataArray> array = image->GetPointData()->GetScalars();
   int extent[6];
   image->GetExtent(extent);
-  shared.type = ToNrrdType(array->GetDataType());
+  shared.type = ToNrrdType(array);
   shared.ijkToRas = ToMatrix(ijkToRas);
   for (int axis = 0; axis < 3; ++axis) {
     shared.size[axis] = static_cast<size_t>(extent[2 * axis + 1] - extent[2 * axis] + 1);

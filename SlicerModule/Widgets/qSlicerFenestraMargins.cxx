@@ -9,17 +9,6 @@
 
 #include <algorithm>
 
-namespace {
-
-bool areEqual(const QList<qSlicerFenestraSegment>& a, const QList<qSlicerFenestraSegment>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const qSlicerFenestraSegment& one, const qSlicerFenestraSegment& other) {
-                      return one.id == other.id && one.name == other.name;
-                    });
-}
-
-} // namespace
-
 class qSlicerFenestraMarginsPrivate : public Ui_qSlicerFenestraMargins {
   Q_DECLARE_TR_FUNCTIONS(qSlicerFenestraMargins)
 
@@ -90,7 +79,7 @@ QString qSlicerFenestraMargins::flag() const {
 
 void qSlicerFenestraMargins::build(const QList<qSlicerFenestraSegment>& focus) {
   Q_D(qSlicerFenestraMargins);
-  if (areEqual(focus, d->focus))
+  if (focus == d->focus)
     return;
   d->focus = focus;
   d->boxes.clear();

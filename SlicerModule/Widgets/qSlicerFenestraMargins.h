@@ -9,6 +9,10 @@ class qSlicerFenestraMarginsPrivate;
 
 struct qSlicerFenestraSegment {
   QString id, name;
+
+  bool operator==(const qSlicerFenestraSegment& other) const {
+    return id == other.id && name == other.name;
+  }
 };
 
 /// Margins in mm by which the focus segments grow: one for all, or one per segment.

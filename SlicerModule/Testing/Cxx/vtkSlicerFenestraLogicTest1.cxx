@@ -120,6 +120,15 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   volume->SetAndObserveTransformNodeID(bending->GetID());
   CHECK_BOOL(has(getSnapshotError(logic, settings), "Harden"), true);
   volume->SetAndObserveTransformNodeID(nullptr);
+  const std::map<int, const char*> types = {
+      {VTK_SIGNED_CHAR, "int8"},      {VTK_UNSIGNED_CHAR, "uint8"},
+      {VTK_UNSIGNED_SHORT, "uint16"}, {VTK_UNSIGNED_INT, "uint32"},
+      {VTK_LONG_LONG, "int64"},       {VTK_UNSIGNED_LONG_LONG, "uint64"},
+      {VTK_FLOAT, "float"},           {VTK_DOUBLE, "double"}};
+  for (const auto& [type, name] : types) {
+    volume->GetImageData()->AllocateScalars(type, 1);
+    CHECK_STD_STRING(logic->Snapshot(settings, folder).volume.type, name);
+  }
   return EXIT_SUCCESS;
 }
 
