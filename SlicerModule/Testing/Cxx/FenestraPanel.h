@@ -3,15 +3,18 @@
 
 #include "FenestraTesting.h"
 
+#include "qSlicerFenestraModule.h"
 #include "qSlicerFenestraModuleWidget.h"
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraLogic.h"
 
 #include <qMRMLNodeComboBox.h>
+#include <qSlicerApplication.h>
 
 #include <QComboBox>
 #include <QDoubleSpinBox>
 
+#include <memory>
 #include <string>
 
 namespace FenestraTesting {
@@ -20,8 +23,8 @@ namespace FenestraTesting {
 struct Panel {
   using Node = vtkMRMLFenestraRenderNode;
 
-  qSlicerFenestraModuleWidget* widget;
-  vtkSlicerFenestraLogic* logic;
+  qSlicerFenestraModuleWidget* widget = nullptr;
+  vtkSlicerFenestraLogic* logic = nullptr;
 
   template <typename Widget>
   Widget* find(const char* name) const {
@@ -38,6 +41,25 @@ struct Panel {
   std::string flag(const char* name) const { return settings()->GetFlag(name); }
   Node* chosenRender() const { return Node::SafeDownCast(nodes("RendersBox")->currentNode()); }
   qMRMLNodeComboBox* nodes(const char* name) const { return find<qMRMLNodeComboBox>(name); }
+};
+
+/// Slicer with the module and its panel. Arguments: the renderer, a folder for files, the module's
+/// library.
+struct Slicer {
+  Slicer(int& argc, char* argv[]) : application(argc, argv), scene(application.mrmlScene()) {
+    module.setName("Fenestra");
+    module.setPath(argv[3]);
+    module.initialize(application.applicationLogic());
+    module.setMRMLScene(scene);
+    owner.reset(dynamic_cast<qSlicerFenestraModuleWidget*>(module.widgetRepresentation()));
+    panel = {owner.get(), vtkSlicerFenestraLogic::SafeDownCast(module.logic())};
+  }
+
+  qSlicerApplication application;
+  vtkMRMLScene* scene;
+  qSlicerFenestraModule module;
+  std::unique_ptr<qSlicerFenestraModuleWidget> owner;
+  Panel panel;
 };
 
 /// True if exactly one render ends after `action`.

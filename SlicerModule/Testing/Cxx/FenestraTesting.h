@@ -6,6 +6,8 @@
 #include <QCoreApplication>
 #include <QElapsedTimer>
 
+#include <vtkBinaryLabelmapToClosedSurfaceConversionRule.h>
+#include <vtkClosedSurfaceToBinaryLabelmapConversionRule.h>
 #include <vtkImageData.h>
 #include <vtkMRMLScalarVolumeNode.h>
 #include <vtkMRMLScene.h>
@@ -13,6 +15,8 @@
 #include <vtkNew.h>
 #include <vtkOrientedImageData.h>
 #include <vtkSegmentation.h>
+#include <vtkSegmentationConverterFactory.h>
+#include <vtkSmartPointer.h>
 
 #include <cmath>
 #include <sstream>
@@ -52,6 +56,15 @@ inline vtkMRMLScalarVolumeNode* addVolume(vtkMRMLScene* scene) {
   volume->SetAndObserveImageData(image);
   volume->SetOrigin(-16.0, -16.0, -16.0);
   return volume;
+}
+
+/// Converts segments between labels and surfaces, like Slicer's own module.
+inline void registerConverters() {
+  auto* converters = vtkSegmentationConverterFactory::GetInstance();
+  converters->RegisterConverterRule(
+      vtkSmartPointer<vtkBinaryLabelmapToClosedSurfaceConversionRule>::New());
+  converters->RegisterConverterRule(
+      vtkSmartPointer<vtkClosedSurfaceToBinaryLabelmapConversionRule>::New());
 }
 
 /// Adds the ball as a segment "Ball", and an empty segment "Nothing".

@@ -4,25 +4,17 @@
 #include "FenestraPanel.h"
 #include "FenestraTesting.h"
 
-#include "qSlicerFenestraModule.h"
-
-#include <qSlicerApplication.h>
-
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
-#include <QScopedPointer>
 #include <QSpinBox>
 #include <QTableWidget>
 
-#include <vtkBinaryLabelmapToClosedSurfaceConversionRule.h>
 #include <vtkCacheManager.h>
-#include <vtkClosedSurfaceToBinaryLabelmapConversionRule.h>
 #include <vtkCollection.h>
 #include <vtkMRMLApplicationLogic.h>
 #include <vtkMRMLLayoutNode.h>
 #include <vtkMRMLSliceLogic.h>
-#include <vtkSegmentationConverterFactory.h>
 
 namespace {
 
@@ -126,29 +118,15 @@ int checkEnd(const Panel& panel, vtkMRMLScene* scene, qSlicerFenestraSession* se
 } // namespace
 
 int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
-  qSlicerApplication application(argc, argv);
-  if (argc < 4)
-    return EXIT_FAILURE;
-  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // like Slicer's own module
-  converters->RegisterConverterRule(
-      vtkSmartPointer<vtkBinaryLabelmapToClosedSurfaceConversionRule>::New());
-  converters->RegisterConverterRule(
-      vtkSmartPointer<vtkClosedSurfaceToBinaryLabelmapConversionRule>::New());
-  vtkMRMLScene* scene = application.mrmlScene();
+  const FenestraTesting::Slicer slicer(argc, argv);
+  const Panel& panel = slicer.panel;
+  vtkMRMLScene* scene = slicer.scene;
+  FenestraTesting::registerConverters();
   scene->GetCacheManager()->SetRemoteCacheDirectory(argv[2]);
-  addPictureView(application.applicationLogic(), scene);
-  qSlicerFenestraModule module;
-  module.setName("Fenestra");
-  module.setPath(argv[3]);
-  module.initialize(application.applicationLogic());
-  module.setMRMLScene(scene);
-  const QScopedPointer<qSlicerFenestraModuleWidget> owner(
-      dynamic_cast<qSlicerFenestraModuleWidget*>(module.widgetRepresentation()));
-  CHECK_NOT_NULL(owner.data());
-  const Panel panel{owner.data(), vtkSlicerFenestraLogic::SafeDownCast(module.logic())};
+  addPictureView(slicer.application.applicationLogic(), scene);
   FenestraTesting::addVolume(scene);
   FenestraTesting::addSegmentation(scene);
-  owner->enter();
+  panel.widget->enter();
   panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Checked);
   CHECK_EXIT_SUCCESS(chooseMaterial(panel));
   panel.choose("TransferBox", "ct-soft");
@@ -189,7 +167,7 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkClosed(panel));
 
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), true), true);
-  CHECK_EXIT_SUCCESS(checkEnd(panel, scene, owner->session()));
-  owner->exit();
+  CHECK_EXIT_SUCCESS(checkEnd(panel, scene, panel.widget->session()));
+  panel.widget->exit();
   return EXIT_SUCCESS;
 }

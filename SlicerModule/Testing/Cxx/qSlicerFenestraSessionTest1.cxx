@@ -12,16 +12,11 @@
 #include <QFileInfo>
 #include <QProcess>
 
-#include <vtkBinaryLabelmapToClosedSurfaceConversionRule.h>
 #include <vtkCallbackCommand.h>
-#include <vtkClosedSurfaceToBinaryLabelmapConversionRule.h>
-#include <vtkSegmentationConverterFactory.h>
-
 #include <vtkMRMLModelNode.h>
 #include <vtkMRMLStorageNode.h>
 #include <vtkMRMLVectorVolumeNode.h>
 #include <vtkPolyData.h>
-#include <vtkSmartPointer.h>
 
 #include <cstring>
 
@@ -262,11 +257,7 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   const QString folder = QString(argv[2]) + "/session";
   QDir(folder).removeRecursively();
   QDir().mkpath(folder);
-  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // like Slicer's own module
-  converters->RegisterConverterRule(
-      vtkSmartPointer<vtkBinaryLabelmapToClosedSurfaceConversionRule>::New());
-  converters->RegisterConverterRule(
-      vtkSmartPointer<vtkClosedSurfaceToBinaryLabelmapConversionRule>::New());
+  FenestraTesting::registerConverters();
   vtkNew<vtkMRMLScene> scene;
   vtkNew<vtkSlicerFenestraLogic> logic;
   logic->SetMRMLScene(scene);
