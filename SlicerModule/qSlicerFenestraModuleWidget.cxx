@@ -90,7 +90,6 @@ void qSlicerFenestraModuleWidget::setup() {
   d->session = dynamic_cast<qSlicerFenestraModule*>(this->module())->session();
   connectPanel();
   connectSession();
-  d->session->queryCapabilities();
   updateButtons();
 }
 
@@ -132,11 +131,6 @@ void qSlicerFenestraModuleWidget::connectPanel() {
 void qSlicerFenestraModuleWidget::connectSession() {
   using Session = qSlicerFenestraSession;
   Q_D(qSlicerFenestraModuleWidget);
-  connect(d->session, &Session::capabilitiesReceived, this,
-          [d](const qFenestraCapabilities& capabilities) {
-            d->Settings->setCapabilities(capabilities);
-            d->Settings->use(d->Settings->node());
-          });
   connect(d->session, &Session::materialsReceived, d->Settings,
           &qSlicerFenestraSettings::setKnownMaterials);
   connect(d->session, &Session::previewReceived, this,

@@ -2,7 +2,8 @@
 
 #include "FenestraMaterials.h"
 
-#include <QCoreApplication>
+#include <qSlicerCoreApplication.h>
+
 #include <QDebug>
 #include <QDir>
 #include <QEventLoop>
@@ -10,7 +11,6 @@
 #include <QFileInfo>
 
 #include <vtkImageData.h>
-#include <vtkMRMLApplicationLogic.h>
 #include <vtkMRMLScene.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
@@ -33,22 +33,6 @@ QString toUserText(QString message, const QString& folder) {
     message[0] = message[0].toUpper();
   return message;
 }
-
-/// Pauses rendering of the views, so that they are drawn once after all additions.
-struct RenderPause {
-  explicit RenderPause(vtkMRMLApplicationLogic* logic) : application(logic) {
-    if (application)
-      application->PauseRender();
-  }
-  ~RenderPause() {
-    if (application)
-      application->ResumeRender();
-  }
-  RenderPause(const RenderPause&) = delete;
-  RenderPause& operator=(const RenderPause&) = delete;
-
-  vtkSmartPointer<vtkMRMLApplicationLogic> application;
-};
 
 } // namespace
 
@@ -97,8 +81,6 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
   connect(&m_queue, &qFenestraQueue::commented, this,
           [this](int, const QString& text) { emit statusChanged(text); });
   connect(&m_queue, &qFenestraQueue::ended, this, &qSlicerFenestraSession::finishRender);
-  connect(&m_capabilityQuery, &qFenestraCapabilityQuery::received, this,
-          &qSlicerFenestraSession::capabilitiesReceived);
   connect(&m_materials, &qFenestraMaterialsQuery::received, this,
           &qSlicerFenestraSession::materialsReceived);
   connect(this, &qSlicerFenestraSession::ended, this, [](Node*, const qFenestraOutcome& outcome) {
@@ -112,7 +94,6 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
 qSlicerFenestraSession::~qSlicerFenestraSession() {
   disconnect(&m_queue, nullptr, this, nullptr);
   disconnect(&m_preview, nullptr, this, nullptr);
-  disconnect(&m_capabilityQuery, nullptr, this, nullptr);
   disconnect(&m_materials, nullptr, this, nullptr);
   m_preview.stop();
   m_worker.clear();
@@ -122,10 +103,6 @@ qSlicerFenestraSession::~qSlicerFenestraSession() {
 void qSlicerFenestraSession::removeFolder(const QString& folder) {
   if (!folder.isEmpty())
     QDir(folder).removeRecursively();
-}
-
-void qSlicerFenestraSession::queryCapabilities() {
-  m_capabilityQuery.request(m_program);
 }
 
 void qSlicerFenestraSession::queryMaterials(const std::vector<SlicerExport::Segment>& segments) {
@@ -297,7 +274,7 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
     runInMainThread([this, id, outcome, result, message] {
       if (!message.isEmpty())
         return endRender(id, toFailure(tr("The image could not be read. Press Repeat."), message));
-      const auto paused = std::make_shared<RenderPause>(m_logic->GetMRMLApplicationLogic());
+      const auto paused = std::make_shared<SlicerRenderBlocker>(); // draws the views once
       addResult(id, outcome, [this, result, paused](Node* node, int step) {
         m_logic->AddResult(node, *result, step);
       });
@@ -315,9 +292,8 @@ void qSlicerFenestraSession::addResult(int id, const qFenestraOutcome& outcome,
     return runInMainThread(
         [this, id, outcome, add, step] { addResult(id, outcome, add, step + 1); });
   }
-  if (open) {
+  if (open)
     m_results.add(node, m_renders[id].folder);
-  }
   endRender(id, outcome);
 }
 

@@ -2,7 +2,6 @@
 #define __qSlicerFenestraSession_h
 
 #include "FenestraSceneFiles.h"
-#include "qFenestraCapabilities.h"
 #include "qFenestraFolder.h"
 #include "qFenestraMaterials.h"
 #include "qFenestraPreview.h"
@@ -56,8 +55,6 @@ public:
   bool isRendering() const { return !m_renders.isEmpty(); }
   int waitingCount() const { return isRendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
 
-  /// Queries the renderer's capabilities; `capabilitiesReceived` reports them.
-  void queryCapabilities();
   /// Queries the materials that the renderer chooses for the segments; `materialsReceived` reports
   /// them. Unchanged segments are not queried again.
   void queryMaterials(const std::vector<SlicerExport::Segment>& segments);
@@ -78,7 +75,6 @@ public slots:
   void refresh();
 
 signals:
-  void capabilitiesReceived(const qFenestraCapabilities& capabilities);
   void materialsReceived(const qFenestraMaterials& materials);
   void previewReceived(const QImage& picture, const qFenestraPreviewImage& what);
   /// `message`: a sentence for the user. The last preview stays visible.
@@ -145,7 +141,6 @@ private:
   QTimer m_sampleTimer; ///< active while the sample is generated
   QThreadPool m_worker;
 
-  qFenestraCapabilityQuery m_capabilityQuery;
   qFenestraMaterialsQuery m_materials;
   std::vector<SlicerExport::Segment> m_queriedSegments; ///< segments of the last query
   qFenestraQueue m_queue;

@@ -1,6 +1,5 @@
 #include "qSlicerFenestraLook.h"
 
-#include "qFenestraCapabilities.h"
 #include "qSlicerFenestraLights.h"
 #include "qSlicerFenestraWidgets.h"
 #include "ui_qSlicerFenestraLook.h"
@@ -54,12 +53,6 @@ qSlicerFenestraLook::qSlicerFenestraLook(QWidget* parent)
 }
 
 qSlicerFenestraLook::~qSlicerFenestraLook() = default;
-
-void qSlicerFenestraLook::setCapabilities(const qFenestraCapabilities& capabilities) {
-  Q_D(qSlicerFenestraLook);
-  showRow(d->Form, d->ExposureBox, capabilities.flags.contains("exposure"));
-  showRow(d->Form, d->ToneBox, capabilities.flags.contains("tone"));
-}
 
 // ---- flags
 

@@ -8,7 +8,6 @@
 #include <string>
 
 class qSlicerFenestraLookPrivate;
-struct qFenestraCapabilities;
 
 /// \brief Widgets for the appearance: tissue colors, lights, background, exposure, tone curve.
 ///
@@ -23,8 +22,6 @@ public:
   explicit qSlicerFenestraLook(QWidget* parent = nullptr);
   ~qSlicerFenestraLook() override;
 
-  /// Shows the controls that the renderer supports.
-  void setCapabilities(const qFenestraCapabilities& capabilities);
   /// Shows the flags. `rig`: rig and strengths as take() returned them; used only if they produce
   /// the flag `lights`. `byPreset`: an anatomy preset sets what flags do not set.
   void show(const Flags& flags, const QString& rig, bool byPreset);

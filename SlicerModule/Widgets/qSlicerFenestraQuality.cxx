@@ -1,6 +1,5 @@
 #include "qSlicerFenestraQuality.h"
 
-#include "qFenestraCapabilities.h"
 #include "qSlicerFenestraWidgets.h"
 #include "ui_qSlicerFenestraQuality.h"
 
@@ -36,12 +35,6 @@ qSlicerFenestraQuality::qSlicerFenestraQuality(QWidget* parent)
 }
 
 qSlicerFenestraQuality::~qSlicerFenestraQuality() = default;
-
-void qSlicerFenestraQuality::setCapabilities(const qFenestraCapabilities& capabilities) {
-  Q_D(qSlicerFenestraQuality);
-  d->Turntable->setVisible(capabilities.hasTurntable());
-  showRow(d->TurntableForm, d->SteadyBox, capabilities.turntable.contains("--steady"));
-}
 
 void qSlicerFenestraQuality::setHasVolume(bool has) {
   Q_D(qSlicerFenestraQuality);

@@ -8,7 +8,6 @@
 #include <string>
 
 class qSlicerFenestraQualityPrivate;
-struct qFenestraCapabilities;
 
 /// Widgets for the flags of quality, size and turntable.
 class qSlicerFenestraQuality : public QWidget {
@@ -20,8 +19,6 @@ public:
   explicit qSlicerFenestraQuality(QWidget* parent = nullptr);
   ~qSlicerFenestraQuality() override;
 
-  /// Shows the controls that the renderer supports.
-  void setCapabilities(const qFenestraCapabilities& capabilities);
   void setHasVolume(bool has);
   void show(const Flags& flags);
   /// Writes the flags; empty: not passed.

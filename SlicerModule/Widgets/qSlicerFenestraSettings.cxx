@@ -1,7 +1,6 @@
 #include "qSlicerFenestraSettings.h"
 
 #include "FenestraFlags.h"
-#include "qFenestraCapabilities.h"
 #include "qSlicerFenestraWidgets.h"
 #include "ui_qSlicerFenestraSettings.h"
 #include "vtkMRMLFenestraRenderNode.h"
@@ -16,6 +15,7 @@
 #include <vtkSegmentation.h>
 #include <vtkWeakPointer.h>
 
+#include <QAbstractItemView>
 #include <QScopedValueRollback>
 #include <QStandardItemModel>
 
@@ -59,8 +59,7 @@ public:
   vtkSlicerFenestraLogic* logic = nullptr;
   vtkWeakPointer<Node> node;
   vtkWeakPointer<vtkMRMLNode> volume, segmentation, camera, plane; ///< observed
-  QList<Choice> anatomies; ///< presets; the panel offers those of the renderer
-  bool showing = false;    ///< the widgets are being set by the program, not by the user
+  bool showing = false; ///< the widgets are being set by the program, not by the user
 };
 
 qSlicerFenestraSettings::qSlicerFenestraSettings(QWidget* parent)
@@ -70,13 +69,9 @@ qSlicerFenestraSettings::qSlicerFenestraSettings(QWidget* parent)
   d->setupUi(this);
   setItemData(d->PresetBox, {"", "auto", "knee-cartilage", "foot-bones", "spine", "heart", "lungs",
                              "liver", "brain-surface", "brain-tumor", "fetal-face"});
-  for (const int first = 2; d->PresetBox->count() > first; d->PresetBox->removeItem(first)) {
-    const QString name = d->PresetBox->itemData(first).toString();
-    d->anatomies.append(
-        {d->PresetBox->itemText(first), name, QIcon(QPixmap(":/Icons/preset-" + name + ".png"))});
-  }
-  setItemData(d->ViewBox, {"", "anterior", "posterior", "left", "right", "superior", "inferior"});
-  showRow(d->SubjectForm, d->PresetBox, false); // until the renderer has presets
+  d->PresetBox->view()->setIconSize({48, 48}); // the list's only: the box stays one line high
+  setItemData(d->ViewBox,
+              {"", "auto", "anterior", "posterior", "left", "right", "superior", "inferior"});
   connect(d->VolumeBox, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this,
           SLOT(takeVolume(vtkMRMLNode*)));
   connect(d->SegmentationBox, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this,
@@ -111,20 +106,6 @@ qSlicerFenestraSettings::~qSlicerFenestraSettings() = default;
 void qSlicerFenestraSettings::setLogic(vtkSlicerFenestraLogic* logic) {
   Q_D(qSlicerFenestraSettings);
   d->logic = logic;
-}
-
-void qSlicerFenestraSettings::setCapabilities(const qFenestraCapabilities& capabilities) {
-  Q_D(qSlicerFenestraSettings);
-  constexpr const char* best = "auto";
-  setChoiceOffered(d->ViewBox, 1, {tr("Best view of the focus"), best},
-                   capabilities.hasChoice("view", best));
-  showRow(d->SubjectForm, d->PresetBox, capabilities.flags.contains("preset"));
-  for (const Choice& anatomy : d->anatomies)
-    setChoiceOffered(d->PresetBox, d->PresetBox->count(), anatomy,
-                     capabilities.mentions("preset", anatomy.data));
-  d->Look->setCapabilities(capabilities);
-  d->Materials->setVisible(capabilities.flags.contains("material"));
-  d->QualityAndTurntable->setCapabilities(capabilities);
 }
 
 void qSlicerFenestraSettings::setKnownMaterials(const qFenestraMaterials& known) {
@@ -352,9 +333,9 @@ void qSlicerFenestraSettingsPrivate::showView(const Flags& flags) {
   const bool byPreset = hasPreset() && !view3D && flags.count("position") == 0;
   const QString word = findFlag(flags, "view");
   selectData(ViewBox, word.isEmpty() && byPreset ? "preset" : word);
-  if (auto* model = qobject_cast<QStandardItemModel*>(ViewBox->model()))
-    if (const int best = ViewBox->findData("auto"); best >= 0)
-      model->item(best)->setEnabled(hasPreset() || !node->GetFocus().empty());
+  qobject_cast<QStandardItemModel*>(ViewBox->model())
+      ->item(ViewBox->findData("auto"))
+      ->setEnabled(hasPreset() || !node->GetFocus().empty());
   if (view3D)
     View3DBox->setCurrentNode(view3D);
   const bool fromCamera = selectedData(ViewBox).empty();

@@ -8,7 +8,6 @@ class qSlicerFenestraSettingsPrivate;
 class vtkMRMLFenestraRenderNode;
 class vtkMRMLNode;
 class vtkSlicerFenestraLogic;
-struct qFenestraCapabilities;
 struct qFenestraMaterials;
 
 /// \brief Widgets of a settings node; synchronized with the node in both directions.
@@ -24,8 +23,6 @@ public:
 
   /// The logic must outlive this widget.
   void setLogic(vtkSlicerFenestraLogic* logic);
-  /// Shows the choices that the renderer supports.
-  void setCapabilities(const qFenestraCapabilities& capabilities);
   void setKnownMaterials(const qFenestraMaterials& known);
   /// Enables what needs a volume, and offers the sample without one.
   void setHasVolume(bool has);

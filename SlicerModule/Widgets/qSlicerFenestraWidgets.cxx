@@ -26,7 +26,7 @@ void qSlicerFenestraWidgets::setChoiceOffered(QComboBox* box, int index, const C
   const QSignalBlocker blocker(box);
   const int found = box->findData(choice.data);
   if (offered && found < 0)
-    box->insertItem(index, choice.icon, choice.text, choice.data);
+    box->insertItem(index, choice.text, choice.data);
   if (!offered && found >= 0)
     box->removeItem(found);
 }

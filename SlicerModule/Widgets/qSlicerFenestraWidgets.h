@@ -1,7 +1,6 @@
 #ifndef __qSlicerFenestraWidgets_h
 #define __qSlicerFenestraWidgets_h
 
-#include <QIcon>
 #include <QString>
 #include <QStringList>
 
@@ -17,7 +16,6 @@ namespace qSlicerFenestraWidgets {
 /// Item of a combo box; `data` is a flag's value.
 struct Choice {
   QString text, data;
-  QIcon icon = {};
 };
 
 /// Sets the flag values of the items, whose texts are in the .ui file.

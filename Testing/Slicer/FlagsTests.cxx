@@ -2,9 +2,10 @@
 
 #include "FenestraFlags.h"
 #include "FenestraMaterials.h"
-#include "qFenestraCapabilities.h"
 
+#include <QMap>
 #include <QProcess>
+#include <QXmlStreamReader>
 #include <gtest/gtest.h>
 
 namespace fenestra {
@@ -100,13 +101,39 @@ TEST(SlicerFlags, FileNamesAreDetectedEvenInsideJson) {
     EXPECT_EQ(checkFlag(name, value), Verdict::file) << name << ": " << value;
 }
 
+struct Option {
+  QString text;        ///< description
+  QStringList choices; ///< all values of an option with fixed choices
+};
+
+/// Options by name, from the renderer's description for Slicer.
+QMap<QString, Option> parseOptions(const QString& description) {
+  QMap<QString, Option> all;
+  QXmlStreamReader xml(description);
+  QString name;
+  while (!xml.atEnd()) {
+    xml.readNext();
+    if (!xml.isStartElement())
+      continue;
+    if (xml.name() == QLatin1String("parameters"))
+      name.clear(); // a group of options follows
+    else if (xml.name() == QLatin1String("name"))
+      name = xml.readElementText();
+    else if (xml.name() == QLatin1String("description") && !name.isEmpty())
+      all[name].text = xml.readElementText();
+    else if (xml.name() == QLatin1String("element"))
+      all[name].choices << xml.readElementText();
+  }
+  return all;
+}
+
 /// Reference: the renderer's own description of its options.
 TEST(SlicerFlags, KindsMatchTheRenderersOptions) {
   QProcess child;
   child.start(FENESTRA_EXECUTABLE, {"--xml"});
   ASSERT_TRUE(child.waitForFinished());
   const QString description = QString::fromUtf8(child.readAllStandardOutput());
-  const auto known = qFenestraCapabilities::parseFlags(description);
+  const auto known = parseOptions(description);
   for (const SlicerExport::Flag& flag : SlicerExport::flags()) {
     if (flag.turntableOnly)
       continue;

@@ -3,7 +3,6 @@
 
 #include "TemporaryFolder.h"
 
-#include "qFenestraCapabilities.h"
 #include "qFenestraPreview.h"
 #include "qFenestraQueue.h"
 
@@ -230,31 +229,6 @@ TEST_F(SlicerProcess, ProgressIsReadFromValidTagsOnly) {
         "<filter-progress>-1</filter-progress>", "<filter-progress>nan</filter-progress>",
         "<filter-progress></filter-progress>", "<filter-start>", "</filter-progress>"})
     EXPECT_EQ(qFenestraQueue::parseProgress(line), -1.0) << line;
-}
-
-TEST_F(SlicerProcess, CapabilitiesListOptionsAndNamesOfTheRenderer) {
-  qFenestraCapabilityQuery query;
-  std::vector<qFenestraCapabilities> results;
-  QObject::connect(&query, &qFenestraCapabilityQuery::received,
-                   [&](const qFenestraCapabilities& one) { results.push_back(one); });
-  query.request(program);
-  ASSERT_TRUE(waitFor([&] { return !results.empty(); }));
-  EXPECT_TRUE(results[0].hasChoice("clip", "hole"));
-  EXPECT_FALSE(results[0].hasChoice("clip", "hol"));
-  EXPECT_TRUE(results[0].mentions("lights", "studio"));
-  EXPECT_FALSE(results[0].mentions("lights", "stud"));
-  EXPECT_TRUE(results[0].flags["holemargin"].text.startsWith("Distance from the focus"));
-  EXPECT_TRUE(results[0].flags["holemargin"].choices.isEmpty());
-  EXPECT_EQ(results[0].hasTurntable(), results[0].turntable.contains("--frames"));
-
-  qFenestraCapabilityQuery missing;
-  QObject::connect(&missing, &qFenestraCapabilityQuery::received,
-                   [&](const qFenestraCapabilities& one) { results.push_back(one); });
-  missing.request("/nowhere/fenestra");
-  ASSERT_TRUE(waitFor([&] { return results.size() == 2; }));
-  EXPECT_TRUE(results[1].flags.isEmpty());
-  EXPECT_FALSE(results[1].hasTurntable());
-  EXPECT_TRUE(qFenestraCapabilities::parseFlags("no description").isEmpty());
 }
 
 TEST_F(SlicerProcess, EnvironmentOfAChildOmitsLibraryPaths) {

@@ -3,16 +3,13 @@
 
 #include "FenestraPanel.h"
 #include "FenestraTesting.h"
-#include "qSlicerFenestraModule.h"
 
 #include <ctkSliderWidget.h>
-#include <qSlicerApplication.h>
 
 #include <QCheckBox>
 #include <QLabel>
 #include <QListWidget>
 #include <QPushButton>
-#include <QScopedPointer>
 #include <QSlider>
 #include <QSpinBox>
 #include <QToolButton>
@@ -249,36 +246,28 @@ int checkPlane(const Panel& panel, vtkMRMLScene* scene) {
   return EXIT_SUCCESS;
 }
 
-/// The panel offers only what the renderer supports.
-int checkPresets(const Panel& panel, const qFenestraCapabilities& capabilities) {
-  const bool automatic = capabilities.flags["view"].choices.contains("auto");
-  CHECK_BOOL(panel.find<QComboBox>("ViewBox")->findData("auto") >= 0, automatic);
-  const bool presets = capabilities.flags.contains("preset");
-  CHECK_BOOL(panel.isShown("PresetBox"), presets);
+/// The automatic view needs a focus, and a preset replaces the flags that it sets.
+int checkPresets(const Panel& panel) {
   const std::map<std::string, std::string> before = panel.settings()->GetFlags();
-  if (automatic) {
-    panel.choose("ViewBox", "auto");
-    CHECK_STD_STRING(panel.flag("view"), "auto");
-    panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Unchecked);
-    CHECK_STD_STRING(panel.flag("view"), ""); // no focus
-    panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Checked);
-  }
-  if (presets) {
-    panel.choose("RigBox", "soft");
-    panel.choose("PresetBox", "knee-cartilage");
-    for (const char* name : {"view", "position", "lights", "transfer", "clip"})
-      CHECK_STD_STRING(panel.flag(name), "");
-    CHECK_STD_STRING(panel.flag("preset"), "knee-cartilage");
-    CHECK_STD_STRING(panel.chosen("ViewBox").toStdString(), "preset");
-    panel.choose("ClipBox", "surface"); // overrides the preset
-    CHECK_STD_STRING(panel.flag("clip"), "surface");
-    panel.choose("ViewBox", "left");
-    CHECK_STD_STRING(panel.flag("view"), "left");
-    panel.choose("PresetBox", "");
-    CHECK_STD_STRING(panel.chosen("RigBox").toStdString(), "");
-    CHECK_STD_STRING(panel.flag("clip"), "");
-    panel.choose("RigBox", "soft");
-  }
+  panel.choose("ViewBox", "auto");
+  CHECK_STD_STRING(panel.flag("view"), "auto");
+  panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Unchecked);
+  CHECK_STD_STRING(panel.flag("view"), ""); // no focus
+  panel.find<QListWidget>("FocusList")->item(0)->setCheckState(Qt::Checked);
+  panel.choose("RigBox", "soft");
+  panel.choose("PresetBox", "knee-cartilage");
+  for (const char* name : {"view", "position", "lights", "transfer", "clip"})
+    CHECK_STD_STRING(panel.flag(name), "");
+  CHECK_STD_STRING(panel.flag("preset"), "knee-cartilage");
+  CHECK_STD_STRING(panel.chosen("ViewBox").toStdString(), "preset");
+  panel.choose("ClipBox", "surface"); // overrides the preset
+  CHECK_STD_STRING(panel.flag("clip"), "surface");
+  panel.choose("ViewBox", "left");
+  CHECK_STD_STRING(panel.flag("view"), "left");
+  panel.choose("PresetBox", "");
+  CHECK_STD_STRING(panel.chosen("RigBox").toStdString(), "");
+  CHECK_STD_STRING(panel.flag("clip"), "");
+  panel.choose("RigBox", "soft");
   panel.settings()->SetFlags(before);
   CHECK_BOOL(panel.settings()->GetFlags() == before, true);
   return EXIT_SUCCESS;
@@ -305,11 +294,8 @@ int checkWithheld(const Panel& panel) {
 }
 
 /// A turntable is rendered, played, stopped and resumed.
-int checkTurntable(const Panel& panel, const qFenestraCapabilities& capabilities) {
-  CHECK_BOOL(panel.isShown("Turntable"), capabilities.hasTurntable());
+int checkTurntable(const Panel& panel) {
   CHECK_BOOL(panel.isShown("Player"), false);
-  if (!capabilities.hasTurntable())
-    return EXIT_SUCCESS;
   auto* frames = panel.find<QSpinBox>("FramesBox");
   auto* turn = panel.find<QPushButton>("TurnButton");
   frames->setValue(3);
@@ -392,32 +378,16 @@ int checkRenders(const Panel& panel) {
 } // namespace
 
 int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
-  qSlicerApplication application(argc, argv);
-  if (argc < 4)
-    return EXIT_FAILURE;
-  qSlicerFenestraModule module;
-  module.setName("Fenestra");
-  module.setPath(argv[3]);
-  module.initialize(application.applicationLogic());
-  vtkMRMLScene* scene = application.mrmlScene();
-  module.setMRMLScene(scene);
-  auto* widget = dynamic_cast<qSlicerFenestraModuleWidget*>(module.widgetRepresentation());
-  CHECK_NOT_NULL(widget);
-  const QScopedPointer<qSlicerFenestraModuleWidget> owner(widget);
-  const Panel panel{widget, vtkSlicerFenestraLogic::SafeDownCast(module.logic())};
-  qFenestraCapabilities capabilities;
-  bool hasAnswer = false;
-  QObject::connect(widget->session(), &qSlicerFenestraSession::capabilitiesReceived,
-                   [&](const auto& answer) { capabilities = answer, hasAnswer = true; });
-  widget->enter();
+  const FenestraTesting::Slicer slicer(argc, argv);
+  const Panel& panel = slicer.panel;
+  vtkMRMLScene* scene = slicer.scene;
+  panel.widget->enter();
   CHECK_EXIT_SUCCESS(checkEmpty(panel));
-  CHECK_BOOL(waitFor([&] { return hasAnswer; }), true);
-  CHECK_BOOL(capabilities.flags["clip"].choices.contains("ghost"), true);
-  widget->exit();
+  panel.widget->exit();
 
   vtkMRMLNode* volume = FenestraTesting::addVolume(scene);
   vtkMRMLSegmentationNode* segmentation = FenestraTesting::addSegmentation(scene);
-  widget->enter();
+  panel.widget->enter();
   CHECK_EXIT_SUCCESS(checkDefaults(panel, volume, segmentation));
   CHECK_EXIT_SUCCESS(checkShowingVolume(panel, scene, volume));
   CHECK_EXIT_SUCCESS(checkTaking(panel, segmentation->GetSegmentation()->GetNthSegmentID(0)));
@@ -425,9 +395,9 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkClipping(panel));
   CHECK_EXIT_SUCCESS(checkMargins(panel));
   CHECK_EXIT_SUCCESS(checkPlane(panel, scene));
-  CHECK_EXIT_SUCCESS(checkPresets(panel, capabilities));
+  CHECK_EXIT_SUCCESS(checkPresets(panel));
   CHECK_EXIT_SUCCESS(checkWithheld(panel));
-  CHECK_EXIT_SUCCESS(checkTurntable(panel, capabilities));
+  CHECK_EXIT_SUCCESS(checkTurntable(panel));
   CHECK_EXIT_SUCCESS(checkRenders(panel));
 
   // A segment is added and removed outside the panel; then the segmentation is deselected.
@@ -442,6 +412,6 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
 
   scene->Clear(false);
   CHECK_EXIT_SUCCESS(checkEmpty(panel));
-  widget->exit();
+  panel.widget->exit();
   return EXIT_SUCCESS;
 }

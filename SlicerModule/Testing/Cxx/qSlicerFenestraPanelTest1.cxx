@@ -3,18 +3,17 @@
 
 #include "FenestraPanel.h"
 #include "FenestraTesting.h"
-#include "qSlicerFenestraModule.h"
 
 #include <ctkCollapsibleButton.h>
-#include <qSlicerApplication.h>
 
 #include <QAbstractButton>
 #include <QAbstractSlider>
 #include <QAccessible>
 #include <QLineEdit>
 #include <QListWidget>
+#include <QProcess>
 #include <QProgressBar>
-#include <QScopedPointer>
+#include <QRegularExpression>
 #include <QSpinBox>
 #include <QTableWidget>
 
@@ -63,6 +62,31 @@ int checkNames(const Panel& panel) {
       std::cerr << one->metaObject()->className() << ' ' << one->objectName().toStdString()
                 << " in " << one->parentWidget()->objectName().toStdString() << " has no name\n";
       return EXIT_FAILURE;
+    }
+  }
+  return EXIT_SUCCESS;
+}
+
+/// The renderer, which the module is installed with, accepts the choices of the panel.
+int checkChoices(const Panel& panel, const QString& program) {
+  QProcess child;
+  child.start(program, {"--xml"});
+  CHECK_BOOL(child.waitForFinished(60000), true);
+  const QString description = child.readAllStandardOutput();
+  const std::map<QString, const char*> boxes = {{"preset", "PresetBox"},     {"clip", "ClipBox"},
+                                                {"boundary", "BoundaryBox"}, {"hole", "HoleBox"},
+                                                {"view", "ViewBox"},         {"lights", "RigBox"},
+                                                {"tone", "ToneBox"}};
+  for (const auto& [flag, name] : boxes) {
+    const QString text =
+        description.section("<name>" + flag + "</name>", 1).section("<name>", 0, 0);
+    const auto* box = panel.find<QComboBox>(name);
+    for (int i = 0; i < box->count(); ++i) {
+      const QString word = box->itemData(i).toString();
+      if (!text.contains(QRegularExpression("\\b" + word + "\\b"))) {
+        std::cerr << flag.toStdString() << " has no value " << word.toStdString() << '\n';
+        return EXIT_FAILURE;
+      }
     }
   }
   return EXIT_SUCCESS;
@@ -123,30 +147,17 @@ int checkSample(const Panel& panel) {
 } // namespace
 
 int qSlicerFenestraPanelTest1(int argc, char* argv[]) {
-  qSlicerApplication application(argc, argv);
-  if (argc < 4)
-    return EXIT_FAILURE;
-  qSlicerFenestraModule module;
-  module.setName("Fenestra");
-  module.setPath(argv[3]);
-  module.initialize(application.applicationLogic());
-  vtkMRMLScene* scene = application.mrmlScene();
-  module.setMRMLScene(scene);
-  const QScopedPointer<qSlicerFenestraModuleWidget> owner(
-      dynamic_cast<qSlicerFenestraModuleWidget*>(module.widgetRepresentation()));
-  CHECK_NOT_NULL(owner.data());
-  const Panel panel{owner.data(), vtkSlicerFenestraLogic::SafeDownCast(module.logic())};
-  bool hasAnswer = false;
-  QObject::connect(owner->session(), &qSlicerFenestraSession::capabilitiesReceived,
-                   [&] { hasAnswer = true; });
-  owner->enter();
-  CHECK_BOOL(waitFor([&] { return hasAnswer; }), true);
+  const FenestraTesting::Slicer slicer(argc, argv);
+  const Panel& panel = slicer.panel;
+  vtkMRMLScene* scene = slicer.scene;
+  panel.widget->enter();
+  CHECK_EXIT_SUCCESS(checkChoices(panel, argv[1]));
   CHECK_EXIT_SUCCESS(checkSections(panel));
   CHECK_EXIT_SUCCESS(checkReasons(panel));
   FenestraTesting::addVolume(scene);
   vtkMRMLSegmentationNode* segmentation = FenestraTesting::addSegmentation(scene);
-  owner->exit();
-  owner->enter();
+  panel.widget->exit();
+  panel.widget->enter();
   CHECK_EXIT_SUCCESS(checkSections(panel));
   CHECK_EXIT_SUCCESS(checkReasons(panel));
   CHECK_EXIT_SUCCESS(checkFilter(panel));
@@ -168,6 +179,6 @@ int qSlicerFenestraPanelTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkList(panel, segmentation->GetSegmentation()));
   scene->Clear(false);
   CHECK_EXIT_SUCCESS(checkSample(panel));
-  owner->exit();
+  panel.widget->exit();
   return EXIT_SUCCESS;
 }
