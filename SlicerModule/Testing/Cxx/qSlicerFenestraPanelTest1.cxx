@@ -25,7 +25,8 @@ using FenestraTesting::waitFor;
 
 /// The sections that a first image does not need are closed.
 int checkSections(const Panel& panel) {
-  CHECK_BOOL(panel.find<ctkCollapsibleButton>("WhatToShow")->collapsed(), false);
+  for (const char* open : {"WhatToShow", "ClippingSection"})
+    CHECK_BOOL(panel.find<ctkCollapsibleButton>(open)->collapsed(), false);
   for (const char* closed : {"Materials", "ViewAndLight", "Quality", "Turntable", "Images"})
     CHECK_BOOL(panel.find<ctkCollapsibleButton>(closed)->collapsed(), true);
   std::cout << "height of the panel: " << panel.widget->sizeHint().height() << '\n';

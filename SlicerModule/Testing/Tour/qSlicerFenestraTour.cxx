@@ -225,16 +225,18 @@ bool qSlicerFenestraTour::stopRender() {
   return lastRender() != nullptr;
 }
 
-/// Shows the best image so far, which is the first, beside the previews.
+/// Shows the best image so far, which is the first, beside the previews. Folds the section above,
+/// so that preview and clipping are visible together.
 bool qSlicerFenestraTour::changeClipping() {
   showVolumeRendering(false);
   m_panel->findChild<qMRMLNodeComboBox*>("RendersBox")->setCurrentNode(firstRender());
   if (!click("ShowButton"))
     return false;
+  fold("WhatToShow", true);
   const bool hole = takePreviewScreenshot("12-hole", [this] {
     const bool chosen = choose("ClipBox", "hole");
     set("holemarginBox", 8.0);
-    scrollTo("Clipping");
+    scrollTo("PreviewBox");
     return chosen;
   });
   const bool surroundings = takePreviewScreenshot("13-surroundings", [this] {
@@ -244,30 +246,27 @@ bool qSlicerFenestraTour::changeClipping() {
     set("contextsaturationBox", 30.0);
     wait(300);
     scrollTo("ClipDetails");
+    scrollTo("PreviewLabel");
     return chosen;
   });
   m_panel->findChild<ctkCollapsibleGroupBox*>("ClipDetails")->setCollapsed(true);
+  fold("ClippingSection", true);
   return hole && surroundings && settings()->GetFlag("boundary") == "exact" &&
          settings()->GetFlag("hole").empty() && settings()->GetFlag("soft").empty();
 }
 
-/// Tests the automatic view, if the renderer supports it.
 bool qSlicerFenestraTour::changeView() {
-  bool good = true;
-  if (m_panel->findChild<QComboBox*>("ViewBox")->findData("auto") >= 0)
-    good = takePreviewScreenshot("14-view", [this] {
-      fold("WhatToShow", true);
-      fold("ViewAndLight", false);
-      scrollTo("PreviewBox");
-      return choose("ViewBox", "auto");
-    });
+  const bool best = takePreviewScreenshot("14-view", [this] {
+    fold("ViewAndLight", false);
+    scrollTo("PreviewBox");
+    return choose("ViewBox", "auto");
+  });
+  fold("ClippingSection", false);
   fold("WhatToShow", false);
-  if (!m_panel->findChild<QComboBox*>("PresetBox")->isHidden())
-    good = good && takePreviewScreenshot("15-anatomy", [this] {
-             scrollTo("PreviewBox");
-             return choose("PresetBox", "knee-cartilage");
-           });
-  return good;
+  return best && takePreviewScreenshot("15-anatomy", [this] {
+           scrollTo("PreviewBox");
+           return choose("PresetBox", "knee-cartilage");
+         });
 }
 
 bool qSlicerFenestraTour::renderMeasured() {
@@ -285,10 +284,8 @@ bool qSlicerFenestraTour::renderMeasured() {
   return measures->isVisible() && measures->text().contains("Focus visible");
 }
 
-/// Renders and plays a few small frames, if the renderer supports turntables.
+/// Renders and plays a few small frames.
 bool qSlicerFenestraTour::renderTurntable() {
-  if (m_panel->findChild<QWidget*>("Turntable")->isHidden())
-    return true;
   fold("Turntable", false);
   const std::map<std::string, std::string> flags = settings()->GetFlags();
   settings()->SetFlag("size", "256x256");

@@ -54,6 +54,8 @@ bool qSlicerFenestraUser::openModule() {
   if (!selector)
     return false;
   selector->selectModule("Fenestra");
+  if (auto* probe = m_window->findChild<ctkCollapsibleButton*>("DataProbeCollapsibleWidget"))
+    probe->setCollapsed(true); // leaves its place to the panel
   wait(500);
   m_panel = m_window->findChild<qSlicerFenestraModuleWidget*>();
   if (!m_panel)
