@@ -182,6 +182,9 @@ bool qSlicerFenestraTour::render() {
   const int before = m_ended;
   if (!click("RenderButton"))
     return false;
+  const auto* progress = m_panel->findChild<QWidget*>("ProgressBar");
+  if (!waitFor([progress] { return progress->isVisible(); }))
+    return false;
   wait(1500);
   takeScreenshot("6-rendering");
   if (!waitFor([&] { return m_ended > before; }, 300000))
