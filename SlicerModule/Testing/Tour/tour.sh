@@ -12,6 +12,7 @@ commands=$(dirname "$modules")/cli-modules
 slicer_libraries=$(echo "$(dirname "$slicer")"/../lib/Slicer-*)
 export LD_LIBRARY_PATH="$modules:$slicer_libraries/qt-loadable-modules:$slicer_libraries/cli-modules${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 export HOME="$report/home" FENESTRA_TOUR="$report"
+export SLICER_BACKGROUND_THREAD_PRIORITY=0 # Slicer applies it to its whole process, so a busy machine would starve it
 settings="$HOME/.config/NA-MIC"
 mkdir -p "$settings"
 printf '[MainWindow]\nDontShowDisclaimerMessage=1024\nDontConfirmExit=1024\nDontConfirmSceneSave=1024\n' >"$settings/Slicer.ini"
