@@ -27,6 +27,25 @@ if(FENESTRA_FUZZING)
   target_compile_options(fenestra_reading INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
+# fenestra_precompile(NAME headers...): headers that targets with the same compiler options share by
+# `target_precompile_headers(TARGET REUSE_FROM NAME)`.
+function(fenestra_precompile name)
+  add_library(${name} OBJECT "${PROJECT_SOURCE_DIR}/cmake/Headers.cxx")
+  target_link_libraries(${name} PRIVATE Eigen3::Eigen fenestra_sanitizers fenestra_warnings)
+  target_precompile_headers(${name} PRIVATE ${ARGN})
+endfunction()
+
+# What reads and writes files and composes requests takes longer to compile than to run: little optimization takes half
+# the time. The headers are precompiled.
+target_compile_options(fenestra_reading INTERFACE $<$<CONFIG:Release>:-O1>)
+if(FENESTRA_SANITIZERS AND NOT FENESTRA_CHECK_ACCESSES)
+  target_compile_options(fenestra_reading INTERFACE -O0)
+endif()
+fenestra_precompile(fenestra_reading_headers
+  <algorithm> <array> <charconv> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <span> <sstream>
+  <string> <vector> <Eigen/Core> <nlohmann/json.hpp> <tbb/parallel_for.h>)
+target_link_libraries(fenestra_reading_headers PRIVATE fenestra_reading)
+
 # fenestra_simd_sources(sources...): sources that Highway compiles once per instruction set. A multiplication
 # and an addition are fused only where the source says so: results must not depend on inlining.
 # Sanitizer builds emulate the SIMD lanes, so that the reads of gathers are checked. With clang they omit
@@ -49,7 +68,7 @@ function(fenestra_simd_sources)
     endif()
   endforeach()
   set_source_files_properties(${ARGN} PROPERTIES
-    COMPILE_OPTIONS "${options}" SKIP_UNITY_BUILD_INCLUSION ON)
+    COMPILE_OPTIONS "${options}" SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
 # fenestra_library(FOLDER sources... [PUBLIC libraries...] [PRIVATE libraries...])
@@ -78,7 +97,8 @@ function(fenestra_library folder)
   target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS "${root}" FILES ${standalone})
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} fenestra_sanitizers
     PRIVATE ${arg_PRIVATE} fenestra_warnings)
-  if(folder MATCHES "^(io|files|scene|program)")
+  if(folder MATCHES "^(io|files|scene|program|ranks)")
     target_link_libraries(${target} PRIVATE fenestra_reading)
+    target_precompile_headers(${target} REUSE_FROM fenestra_reading_headers)
   endif()
 endfunction()

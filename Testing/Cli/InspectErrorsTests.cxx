@@ -91,8 +91,10 @@ std::string makeExponentialTree(std::size_t children) {
     const std::size_t begin = firstNode + level * nodeSize;
     file.resize(begin);
     file += "TREE\0"s + (level < 4 ? '\1' : '\0') + number(children, 2) + std::string(16, '\0');
-    for (std::size_t i = 0; i < children; ++i)
-      file += number(0, 8) + number(level < 4 ? begin + nodeSize : leaf, 8);
+    for (std::size_t i = 0; i < children; ++i) {
+      file += number(0, 8);
+      file += number(level < 4 ? begin + nodeSize : leaf, 8);
+    }
   }
   file.resize(leaf);
   file += "SNOD\0\0"s + number(4, 2);

@@ -1,0 +1,1 @@
+// Empty: CMake requires a source in a target that precompiles headers.
