@@ -57,7 +57,7 @@ run_labels() {
 }
 
 stage_accuracy() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
   FENESTRA_LONG=1 print_table accuracy run_labels "$top/build" statistical stress regression
 }
 
@@ -86,7 +86,7 @@ print_seeds() {
 }
 
 stage_seeds() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
   local rows name
   rows=$(mktemp -d)
   export -f write_seed_row
@@ -117,7 +117,7 @@ run_instructions() {
 }
 
 stage_instructions() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
   cmake --build "$top/build" --target MutationTests
   print_table instruction-sets run_instructions
 }
@@ -171,13 +171,13 @@ stage_clang() {
 
 stage_headers() {
   (cd "$top" && cmake --preset dev -B build-headers -DCMAKE_VERIFY_INTERFACE_HEADER_SETS=ON \
-    -DFENESTRA_BUILD_TESTS=OFF >/dev/null &&
+    -DFENESTRA_BUILD_TESTS=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null &&
     cmake --build build-headers --target all_verify_interface_header_sets) >"$logs/headers.log" ||
     say "a header does not compile alone: $logs/headers.log"
 }
 
 stage_faults() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
   cmake --build "$top/build" --target CorruptedFiles
   local program=$top/build/bin/fenestra log
   log=$logs/fault-injection.log
@@ -189,7 +189,7 @@ stage_faults() {
 }
 
 stage_checkpoints() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
   "$top/Testing/Cli/kills.sh" "$top/build/bin/fenestra" 200 150 >"$logs/checkpoints.log" 2>&1 ||
     say "a killed render resumes incorrectly: $logs/checkpoints.log"
   FENESTRA_LONG=1 "$top/build/bin/CommandTests" --gtest_filter='MergeCommand.*' >>"$logs/checkpoints.log" 2>&1 ||
@@ -234,7 +234,7 @@ stage_paths() {
 
 stage_package() {
   install_packages patchelf busybox-static jq debootstrap lintian
-  build release -DFENESTRA_BUILD_TESTS=ON
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_LONG_TESTS=ON
   bash "$top/Testing/Package/check.sh" "$top/build" contents moved busybox debian slicer again \
     >"$logs/package.log" 2>&1 || say "the archive has errors, or a stage was skipped: $logs/package.log"
   bash "$top/Testing/Package/deb.sh" "$top/build" strictly >"$logs/deb.log" 2>&1 ||
@@ -242,14 +242,14 @@ stage_package() {
 }
 
 stage_boundary() {
-  (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target BoundaryCheck)
+  (cd "$top" && cmake --preset release -DFENESTRA_LONG_TESTS=ON >/dev/null && cmake --build build --target BoundaryCheck)
   print_table boundary-views "$top/build/bin/BoundaryCheck" 256 12
 }
 
 stage_fuzz() {
   FENESTRA_FUZZ_RUNS=1000000 bash "$top/Testing/Fuzz/run.sh" 3600 >"$logs/fuzz.log" 2>&1 ||
     say "fuzzing found an error: $logs/fuzz.log"
-  (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target CorruptedSandboxFiles)
+  (cd "$top" && cmake --preset release -DFENESTRA_LONG_TESTS=ON >/dev/null && cmake --build build --target CorruptedSandboxFiles)
   (cd "$logs" && "$top/build/bin/CorruptedSandboxFiles" 10000 >sandbox.log) ||
     say "corrupted files are neither read nor rejected: $logs/sandbox.log"
 }
@@ -258,7 +258,7 @@ stage_fuzz() {
 measure_record() {
   local folder=${FENESTRA_BUILD:-$top/build}
   if [ -z "${FENESTRA_BUILD:-}" ]; then
-    build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
+    build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
     cmake --build "$folder" --target MutationTests DenoiserBenchmark AppearanceBenchmark
   fi
   rm -rf "$logs/record"

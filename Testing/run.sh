@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# Installs the required packages, builds in Release, and runs the tests: a quarter of the matrix, all others complete
-# except the unit tests of file readers, which --sanitizers runs. Prints the time of each stage and the slowest tests.
+# Installs the required packages, builds in Release, and runs the tests with a quarter of the matrix, without the unit
+# tests of file readers and the long tests (faults, packages, MPI, boundaries), which --sanitizers adds. Prints the
+# time of each stage and the slowest tests.
 # If the environment variable Slicer_DIR names a build of 3D Slicer, the extension is built and tested in it.
 # usage: bash Testing/run.sh [--sanitizers]
-#   --sanitizers  also all unit tests under AddressSanitizer and UndefinedBehaviorSanitizer
+#   --sanitizers  also the long tests, and all unit tests under AddressSanitizer and UndefinedBehaviorSanitizer
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
 sanitizers=
 case "$*" in
   '') ;;
-  --sanitizers) sanitizers=yes ;;
+  --sanitizers) sanitizers=ON ;;
   *) die "usage: bash Testing/run.sh [--sanitizers]" ;;
 esac
 
@@ -29,6 +30,7 @@ run_tests() {
 stage "install packages" 60 install_packages "${build_packages[@]}" libgmock-dev libboost-dev \
   qtbase5-dev ${sanitizers:+clang libclang-rt-14-dev} lld patchelf busybox-static jq mandoc zsh fish
 stage "build (release)" 230 build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=OFF \
+  -DFENESTRA_LONG_TESTS="${sanitizers:-OFF}" \
   ${Slicer_DIR:+"-DSlicer_DIR=$Slicer_DIR"}
 stage "tests (release)" 190 run_tests release
 if [ "$sanitizers" ]; then
