@@ -41,6 +41,8 @@ print_counts() {
     "$(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$1")" $((SECONDS - $2))
 }
 
+all_tests=(-DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON)
+
 # run_labels FOLDER LABEL...: runs the tests with these labels and prints a table of the results.
 run_labels() {
   local folder=$1
@@ -57,7 +59,7 @@ run_labels() {
 }
 
 stage_accuracy() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
+  build release "${all_tests[@]}"
   FENESTRA_LONG=1 print_table accuracy run_labels "$top/build" statistical stress regression
 }
 
@@ -86,7 +88,7 @@ print_seeds() {
 }
 
 stage_seeds() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
+  build release "${all_tests[@]}"
   local rows name
   rows=$(mktemp -d)
   export -f write_seed_row
@@ -117,7 +119,7 @@ run_instructions() {
 }
 
 stage_instructions() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
+  build release "${all_tests[@]}"
   cmake --build "$top/build" --target MutationTests
   print_table instruction-sets run_instructions
 }
@@ -177,7 +179,7 @@ stage_headers() {
 }
 
 stage_faults() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
+  build release "${all_tests[@]}"
   cmake --build "$top/build" --target CorruptedFiles
   local program=$top/build/bin/fenestra log
   log=$logs/fault-injection.log
@@ -189,7 +191,7 @@ stage_faults() {
 }
 
 stage_checkpoints() {
-  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
+  build release "${all_tests[@]}"
   "$top/Testing/Cli/kills.sh" "$top/build/bin/fenestra" 200 150 >"$logs/checkpoints.log" 2>&1 ||
     say "a killed render resumes incorrectly: $logs/checkpoints.log"
   FENESTRA_LONG=1 "$top/build/bin/CommandTests" --gtest_filter='MergeCommand.*' >>"$logs/checkpoints.log" 2>&1 ||
@@ -258,7 +260,7 @@ stage_fuzz() {
 measure_record() {
   local folder=${FENESTRA_BUILD:-$top/build}
   if [ -z "${FENESTRA_BUILD:-}" ]; then
-    build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON -DFENESTRA_LONG_TESTS=ON
+    build release "${all_tests[@]}"
     cmake --build "$folder" --target MutationTests DenoiserBenchmark AppearanceBenchmark
   fi
   rm -rf "$logs/record"

@@ -38,9 +38,6 @@ endfunction()
 # What reads and writes files and composes requests takes longer to compile than to run: little optimization takes half
 # the time. The headers are precompiled.
 target_compile_options(fenestra_reading INTERFACE $<$<CONFIG:Release>:-O1>)
-if(FENESTRA_SANITIZERS AND NOT FENESTRA_CHECK_ACCESSES)
-  target_compile_options(fenestra_reading INTERFACE -O0)
-endif()
 fenestra_precompile(fenestra_reading_headers
   <algorithm> <array> <charconv> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <span> <sstream>
   <string> <vector> <Eigen/Core> <nlohmann/json.hpp> <tbb/parallel_for.h>)

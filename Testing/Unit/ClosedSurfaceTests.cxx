@@ -4,7 +4,6 @@
 
 #include "Approx.h"
 #include "MedicalFiles.h"
-#include "RunSettings.h"
 #include "model/masks/Voxelize.h"
 
 #include <zlib.h>
@@ -298,13 +297,12 @@ TEST(ClosedSurface, RejectsFilesOutsideItsFolder) {
 TEST(ClosedSurface, DamagedBytesAreReadOrRejected) {
   const TemporaryFolder folder;
   std::mt19937 random(5);
-  const int files = testing::reduceSamples(700); // in a slow build, fuzzing does more
   int readCount = 0;
   ::testing::internal::CaptureStderr();
   for (const Encoding encoding : {Encoding::ascii, Encoding::uncompressed, Encoding::deflated}) {
     const std::string original =
         makeSurfaceXml(makeSphere(Vec3(0, 0, 0), 5, 1), "id", "name", encoding);
-    for (int i = 0; i < files; ++i) {
+    for (int i = 0; i < 700; ++i) {
       std::string bytes = original;
       if (i % 8 == 0)
         bytes.resize(random() % original.size());
@@ -321,7 +319,7 @@ TEST(ClosedSurface, DamagedBytesAreReadOrRejected) {
     }
   }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  EXPECT_GT(readCount, files / 14);
+  EXPECT_GT(readCount, 50);
 }
 
 /// Zeros compress well: 200 kB would expand to 1.5 GiB.

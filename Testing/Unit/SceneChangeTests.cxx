@@ -4,7 +4,6 @@
 
 #include "MedicalFiles.h"
 #include "Refusals.h"
-#include "RunSettings.h"
 
 #include <functional>
 
@@ -155,8 +154,6 @@ TEST_F(SceneChange, LampInFocusFrameFollowsTheFocus) {
 }
 
 TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
-  if (testing::slowdownFactor() > 1)
-    GTEST_SKIP() << "a search for the view takes long in a slow build";
   request.view.name = "auto";
   const PreparedScene before(request);
   const auto expectSameAsFresh = [&](const PreparedScene& changed) {
