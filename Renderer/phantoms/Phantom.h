@@ -36,8 +36,7 @@ struct Phantom {
   Vec3 towardViewer = Vec3{-0.35, 1.0, 0.25};
 };
 
-/// Is told the finished fraction of the voxels, above 0 to 1, from any thread, also several at a
-/// time.
+/// Receives the finished fraction of the voxels, above 0 to 1. Several threads call it at a time.
 using PhantomProgress = std::function<void(double)>;
 
 /// Grid of `size` voxels around `center` (world). `fieldOfView`: mm along the voxel axes; the

@@ -61,11 +61,11 @@ public:
   PhantomBar& operator=(const PhantomBar&) = delete;
 
   /// `fraction` of the voxels; from any thread.
-  void showVoxels(double fraction) { show(voxelShare * fraction, "voxels"); }
-  void showWriting() { show(voxelShare, "writing files"); }
+  void showVoxels(double fraction) { show(voxelFraction * fraction, "voxels"); }
+  void showWriting() { show(voxelFraction, "writing files"); }
 
 private:
-  static constexpr double voxelShare = 0.9; ///< of the time; the files take the rest
+  static constexpr double voxelFraction = 0.9; ///< of the time; the files take the rest
 
   void show(double fraction, const char* step) {
     const std::lock_guard lock(m_mutex);
