@@ -332,7 +332,7 @@ Vec3 Clipping::cutGradient(const Vec3& world) const {
       };
       inward[axis] = behind(world + step) - behind(world - step);
     }
-  return 0.5 / edge.softness * inward.normalized();
+  return 0.8 * inward.normalized();
 }
 
 } // namespace fenestra::oracle

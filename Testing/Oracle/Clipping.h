@@ -34,7 +34,7 @@ public:
   double clipWeight(const Vec3& world) const;
 
   /// Gradient that a soft cut adds to the scalar's, in spans (Medium.h) per mm. From 0 to
-  /// `softness` behind the cut, its length is 0.5 / softness and its direction the cut's normal
+  /// `softness` behind the cut, its length is 0.8 per mm and its direction the cut's normal
   /// into the medium. A depth clip's normal is that of the bilinear surface, by finite differences;
   /// where the surface has steps, it is the view axis.
   Vec3 cutGradient(const Vec3& world) const;

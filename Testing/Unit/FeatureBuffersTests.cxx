@@ -154,8 +154,8 @@ TEST(FeatureBuffers, NormalsOfAHomogeneousMediumFollowTheSoftClipEdge) {
     s.transfer.shading = SurfaceShading{};
     s.clip = makeTiltedClip(s);
     const double opacity = 1.0 - std::exp(-6.0);
-    // Surface probability (Kroes, Post, Botha 2012) at gamma 0.5 and softness 3 mm.
-    const double probability = opacity * (1.0 - std::exp(-25.0 * 0.125 * cutShading / 3.0));
+    // Surface probability (Kroes, Post, Botha 2012) at gamma 0.5.
+    const double probability = opacity * (1.0 - std::exp(-25.0 * 0.125 * cutSlope));
     const std::size_t middle = static_cast<std::size_t>(s.width * s.height / 2 + s.width / 2);
     const Vec3 normal = -cutGradient(s.clip, Vec3(1.0, 0.0, 0.0)).normalized();
     s.visitView([&](const SceneView& scene) {

@@ -41,7 +41,7 @@ Vec3 evaluateCut(const ClipPlane& clip, const Vec3& world) {
   if (isBehindCamera(clip.camera, clip.camera.toView(world).z()) ||
       !clip.edge.isRamp(clip.signedDistance(world)))
     return Vec3::Zero();
-  return -cutShading / clip.edge.softness * clip.normal;
+  return -cutSlope * clip.normal;
 }
 
 Vec3 evaluateCut(const ClipDepth& clip, const Vec3& world) {
@@ -59,7 +59,7 @@ Vec3 evaluateCut(const ClipDepth& clip, const Vec3& world) {
   }
   const Vec3 gradient =
       forward * camera.forward() - slope.x() * camera.right() - slope.y() * camera.up();
-  return cutShading / clip.edge.softness * gradient.normalized();
+  return cutSlope * gradient.normalized();
 }
 
 /// Position of a box relative to the half-space in front of the camera.

@@ -68,7 +68,7 @@ void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
   medium.ghost = narrow(edge.ghost);
   medium.softness = narrow(edge.softness);
   medium.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
-  medium.cutSlope = edge.softness > 0.0 ? narrow(cutShading / edge.softness) : 0.0F;
+  medium.cutSlope = edge.softness > 0.0 ? narrow(cutSlope) : 0.0F;
   const Camera& camera = plane ? plane->camera : depth->camera;
   const Vec3& from = camera.pose().position;
   medium.perspective = camera.pose().projection == Projection::perspective;

@@ -71,7 +71,7 @@ struct SimdMedium {
   float ghost = 0.0F;                  ///< ClipEdge
   float softness = 0.0F;               ///< mm
   float perSoftness = 0.0F;            ///< 1 / mm; 0: sharp edge
-  float cutSlope = 0.0F;               ///< cutShading / softness, mm^-1; 0: sharp edge
+  float cutSlope = 0.0F;               ///< length of the cut's gradient, mm^-1; 0: sharp edge
   std::array<float, 3> cutNormal = {}; ///< world, into the medium: of a plane; else view axis
   bool perspective = false;
   /// Rows of the map from index space to view space. Depth is relative to the target.
