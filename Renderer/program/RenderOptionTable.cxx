@@ -170,7 +170,8 @@ struct RenderOptionTable {
        ValueSpec::number(1e-6, 179.0).bind(view.angle), OverrideGroup::extent},
       {"transfer", "FILE|PRESET|JSON", appearanceGroup,
        "Transfer function, which gives voxel values color and opacity: a .vp, .vp.json or Fenestra "
-       ".json file, inline JSON, a preset such as ct-soft, or a volume property of the scene or of "
+       ".json file, inline JSON, a preset such as ct-anatomy, or a volume property of the scene or "
+       "of "
        "3D Slicer by name, such as CT-AAA [the scene's, else by modality]",
        ValueSpec::text().bind(scene.transfer).withNamedValues(listBuiltinPresets("transfer"))},
       {OptionNames("transfer-shift", "shift"), "X", appearanceGroup,
@@ -191,7 +192,8 @@ struct RenderOptionTable {
        "clip=no\" (exempt from clipping); may be repeated",
        ValueSpec::texts().bind(scene.materialChanges, readTexts), OverrideGroup::materials},
       {"lights", "FILE|PRESET|JSON", appearanceGroup,
-       "Lights: cinema, studio, headlight, soft, amber, a .json file, or inline JSON, {...}",
+       "Lights: theatre-wet (with highlights), theatre, cinema, studio, headlight, soft, amber, a "
+       ".json file, or inline JSON, {...}",
        ValueSpec::text().bind(scene.lights).withNamedValues(listBuiltinPresets("lights")),
        OverrideGroup::lights},
       {"environment", "R,G,B|GRAY|FILE", appearanceGroup,
@@ -200,11 +202,11 @@ struct RenderOptionTable {
        ValueSpec::text().bind(scene, readEnvironment), OverrideGroup::lights},
       {"background", "R,G,B|GRAY|KIND", appearanceGroup,
        "Color behind the volume, linear (the tone curve of a .png maps 1,1,1 to light gray, "
-       "100,100,100 to white), gradient (dark grays), transparent or environment [the scene's, "
-       "else gradient]",
+       "100,100,100 to white), dark (nearly black), gradient (dark grays), gray, transparent or "
+       "environment [the scene's, else dark]",
        ValueSpec::text()
            .bind(options.background, readBackground)
-           .withNamedValues({"gradient", "transparent", "environment"})},
+           .withNamedValues({"dark", "gradient", "gray", "transparent", "environment"})},
       {"exposure", "EV", appearanceGroup,
        "Brightness of .png and .tif in stops (1 doubles it), -16 to 16; .exr and .nrrd are "
        "unaffected",

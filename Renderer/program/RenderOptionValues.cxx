@@ -62,10 +62,15 @@ void readBackground(const OptionValues& values, const std::string& name,
   else if (text == "environment")
     background = Background{Background::Kind::environment};
   else if (text == "gradient")
-    background = Background::makeDefault();
+    background = Background::makeDarkGradient();
+  else if (text == "dark")
+    background = Background::makeDark();
+  else if (text == "gray")
+    background = Background::makeGray();
   else
-    background = Background{Background::Kind::color,
-                            parseLinearColor(values, name, "gradient, transparent or environment")};
+    background = Background{
+        Background::Kind::color,
+        parseLinearColor(values, name, "dark, gradient, gray, transparent or environment")};
 }
 
 void readSize(const OptionValues& values, const std::string& name, RenderRequest& scene) {

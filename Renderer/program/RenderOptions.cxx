@@ -213,7 +213,7 @@ RenderOptions makeRenderOptions(const OptionValues& given) {
 
 RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene) {
   RenderSettings settings = options.settings;
-  settings.path.background = options.background.value_or(scene.value_or(Background::makeDefault()));
+  settings.path.background = options.background.value_or(scene.value_or(Background::makeDark()));
   return settings;
 }
 

@@ -1,8 +1,6 @@
 #include "scene/Defaults.h"
 
-#include "base/Color.h"
 #include "base/Error.h"
-#include "model/medium/Reflectance.h"
 
 #include <map>
 
@@ -23,49 +21,6 @@ ViewDirection findView(const std::string& name, const ViewDirection* best) {
                        "' is unknown; use anterior, posterior, left, right, superior, inferior, or "
                        "auto with a focus");
   return known->second;
-}
-
-/// Values of at most about a million voxels, distributed over the volume.
-std::vector<double> sampleValues(const Volume& volume) {
-  const auto sample = [](const auto& voxels) {
-    const std::size_t stride = voxels.size() / 1'000'000 + 1;
-    std::vector<double> values;
-    for (std::size_t i = 0; i < voxels.size(); i += stride)
-      values.push_back(static_cast<double>(voxels[i]));
-    return values;
-  };
-  return std::visit(sample, volume.voxels);
-}
-
-/// Otsu's threshold (1979) of sampled values, from a 256-bin histogram of [low, high].
-double otsuThreshold(const Volume& volume, double low, double high) {
-  constexpr int bins = 256;
-  std::array<double, bins> histogram{};
-  double total = 0.0, moment = 0.0;
-  for (const double value : sampleValues(volume)) {
-    const double x = std::clamp((value - low) / (high - low), 0.0, 1.0);
-    const auto bin = static_cast<std::size_t>(x * (bins - 1));
-    histogram[bin] += 1.0;
-    total += 1.0;
-    moment += static_cast<double>(bin);
-  }
-  double below = 0.0, belowMoment = 0.0;
-  double best = -1.0;
-  int threshold = 0;
-  for (int i = 0; i < bins; ++i) {
-    const double count = histogram[static_cast<std::size_t>(i)];
-    below += count;
-    belowMoment += i * count;
-    if (below == 0.0 || below == total)
-      continue;
-    const double gap = belowMoment / below - (moment - belowMoment) / (total - below);
-    const double betweenVariance = below * (total - below) * gap * gap;
-    if (betweenVariance > best) {
-      best = betweenVariance;
-      threshold = i;
-    }
-  }
-  return low + (high - low) * (threshold + 1.0) / bins;
 }
 
 /// Scales a vector by the power of two that brings its length near 1. Squares then neither overflow
@@ -113,12 +68,50 @@ double shiftIntoScan(const Domain& occupied, const Vec3& up, const Vec3& center,
 
 } // namespace
 
-std::optional<std::string> chooseTransferPreset(const Volume& volume) {
-  return isPlausibleModality(Modality::ct, volume) ? std::optional<std::string>("ct-soft")
-                                                   : std::nullopt;
+std::vector<double> sampleValues(const Volume& volume) {
+  const auto sample = [](const auto& voxels) {
+    const std::size_t stride = voxels.size() / 1'000'000 + 1;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < voxels.size(); i += stride)
+      values.push_back(static_cast<double>(voxels[i]));
+    return values;
+  };
+  return std::visit(sample, volume.voxels);
+}
+
+double otsuThreshold(const Volume& volume, double low, double high) {
+  constexpr int bins = 256;
+  std::array<double, bins> histogram{};
+  double total = 0.0, moment = 0.0;
+  for (const double value : sampleValues(volume)) {
+    const double x = std::clamp((value - low) / (high - low), 0.0, 1.0);
+    const auto bin = static_cast<std::size_t>(x * (bins - 1));
+    histogram[bin] += 1.0;
+    total += 1.0;
+    moment += static_cast<double>(bin);
+  }
+  double below = 0.0, belowMoment = 0.0;
+  double best = -1.0;
+  int threshold = 0;
+  for (int i = 0; i < bins; ++i) {
+    const double count = histogram[static_cast<std::size_t>(i)];
+    below += count;
+    belowMoment += i * count;
+    if (below == 0.0 || below == total)
+      continue;
+    const double gap = belowMoment / below - (moment - belowMoment) / (total - below);
+    const double betweenVariance = below * (total - below) * gap * gap;
+    if (betweenVariance > best) {
+      best = betweenVariance;
+      threshold = i;
+    }
+  }
+  return low + (high - low) * (threshold + 1.0) / bins;
 }
 
 bool isPlausibleModality(Modality modality, const Volume& volume) {
+  if (volume.modality)
+    return modality == *volume.modality;
   // The minimum is air, or padding below it (-2000, -8192 and -32768 occur); the maximum is bone.
   const bool hounsfield = volume.minimum <= -500.0 && volume.maximum >= 200.0;
   return hounsfield == (modality == Modality::ct);
@@ -166,35 +159,6 @@ double transparentFraction(const Mask& focus, const Volume& volume,
     return all > 0.0 ? transparent / all : 0.0;
   };
   return std::visit(count, volume.voxels);
-}
-
-TransferFunction makeRelativeTransfer(const Volume& volume) {
-  const double unit =
-      100.0 / volume.grid.boundingRadius(); // the extinctions below are for a radius of 100 mm
-  const std::array<double, 2> range = findRobustRange(volume);
-  const double low = range[0], high = range[1];
-  if (!(high > low))
-    return {ScalarFunction({{low, ScalarFunction::Value(0.02 * unit)}}),
-            ColorFunction({{low, Rgb(0.9, 0.85, 0.8)}})};
-
-  const double background = otsuThreshold(volume, low, high);
-  const auto between = [&](double f) { return background + f * (high - background); };
-  const auto at = [&](double f) { return low + f * (high - low); };
-  const auto knot = [](double s, double sigma_t) {
-    return ScalarFunction::Knot{s, ScalarFunction::Value(sigma_t)};
-  };
-  const double start = background - 0.35 * (background - low);
-  return {ScalarFunction({knot(start, 0.0), knot(background, 0.8 * unit),
-                          knot(between(0.3), 2.5 * unit), knot(high, 5.0 * unit)}),
-          toAlbedo(ColorFunction({{at(0.05), decodeSrgb(Rgb(0.816, 0.643, 0.580))},
-                                  {at(0.15), decodeSrgb(Rgb(0.769, 0.565, 0.502))},
-                                  {at(0.35), decodeSrgb(Rgb(0.729, 0.525, 0.455))},
-                                  {at(0.6), decodeSrgb(Rgb(0.808, 0.627, 0.541))},
-                                  {at(1.0), decodeSrgb(Rgb(0.925, 0.831, 0.745))}}),
-                   0.0),
-          {},
-          0.0,
-          SurfaceShading::makeCoated(0.2, 0.45)};
 }
 
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,

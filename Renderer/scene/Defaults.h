@@ -1,6 +1,6 @@
 #pragma once
-// Scene defaults: a transfer function from modality and scalar range, and a camera that frames the
-// focus or the volume.
+// Scene defaults: measures of a volume's values, and a camera that frames the focus or the volume.
+// DefaultTransfer.h chooses the transfer function.
 
 #include "model/camera/Camera.h"
 #include "model/medium/TransferFunction.h"
@@ -12,12 +12,16 @@
 
 namespace fenestra {
 
-/// Name of the transfer preset for CT in Hounsfield units; empty for any other volume.
-std::optional<std::string> chooseTransferPreset(const Volume& volume);
-
-/// True if a transfer function for `modality` is plausible for the volume: CT presets require a
-/// volume in Hounsfield units, all other modalities require a volume that is not.
+/// True if a transfer function for `modality` is plausible for the volume: it is the modality that
+/// the file states; else CT requires a volume in Hounsfield units, and all other modalities one
+/// that is not.
 bool isPlausibleModality(Modality modality, const Volume& volume);
+
+/// Values of at most about a million voxels, distributed over the volume.
+std::vector<double> sampleValues(const Volume& volume);
+
+/// Otsu's threshold (1979) of sampled values, from a 256-bin histogram of [low, high].
+double otsuThreshold(const Volume& volume, double low, double high);
 
 /// Robust scalar range: percentiles 0.5 and 99.5, low < high. Constant volume: low = high.
 std::array<double, 2> findRobustRange(const Volume& volume);
@@ -31,12 +35,6 @@ std::optional<double> findAirThreshold(const Volume& volume);
 /// transfer function. Uses at most about a million voxels of the mask.
 double transparentFraction(const Mask& focus, const Volume& volume,
                            const TransferFunction& transfer);
-
-/// Transfer function for volumes without an absolute scale (MR, ultrasound, stored values). The
-/// opacity rises from transparent at the background level to opaque at the 99.5th percentile.
-/// Extinction is relative to the size of the volume. A constant volume becomes a thin uniform
-/// medium without shading.
-TransferFunction makeRelativeTransfer(const Volume& volume);
 
 /// Camera pose of a view request for this volume and focus. Named views look along the patient's
 /// axes. They frame the focus and its surroundings, or `framed` if that is smaller. If the frame

@@ -3,7 +3,7 @@
 #include "base/Color.h"
 #include "files/medical/DicomSeries.h"
 #include "io/InputRegistry.h"
-#include "scene/Defaults.h"
+#include "scene/DefaultTransfer.h"
 #include "scene/InspectionParts.h"
 #include "scene/SegmentMaterials.h"
 
@@ -188,7 +188,7 @@ Json transferJson(const char* source, const std::string& id, const std::string& 
 }
 
 Json defaultTransferJson(const Volume& volume) {
-  const std::optional<std::string> preset = chooseTransferPreset(volume);
+  const std::optional<std::string> preset = chooseTransferPreset(volume, {});
   return transferJson(preset ? "preset" : "range", "", preset.value_or(""));
 }
 

@@ -32,7 +32,7 @@ Json makeRenderReport();
 
 Json volumeJson(const Volume& volume, const std::string& id = "");
 Json transferJson(const char* source, const std::string& id, const std::string& name);
-/// Default transfer function of a volume, from modality and range.
+/// Default transfer function of a volume without segments.
 Json defaultTransferJson(const Volume& volume);
 Json poseJson(const CameraPose& pose, const std::string& id = "", const std::string& name = "");
 /// Adds a POSE.

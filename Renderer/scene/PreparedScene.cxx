@@ -46,8 +46,10 @@ void PreparedScene::prepare() {
       m_focus.get(m_segments.result(), r.focus, r.focusStyle.shaping, volume->volume.grid);
   if (!r.transfer)
     m_sceneTransfer.get(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
+  if (m_segments.result() && needsContent(m_namedTransfer.result(), m_sceneTransfer.result()))
+    m_content.get(volume, m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus);
   const auto transfer = m_transfer.get(volume, m_namedTransfer.result(), m_sceneTransfer.result(),
-                                       r.transferModality, r.shift, r.density);
+                                       m_content.result(), r.transferModality, r.shift, r.density);
   if (const std::string name = resolveMaterials(m_segments.result()); name != noMaterials) {
     makeTint(name);
     if (!isTintOnly(*m_plan))
@@ -111,11 +113,10 @@ StageSeconds PreparedScene::seconds() const {
   const ClipResult unused, &clip = m_clip.isUpdated() ? *m_clip : unused; // unused: 0 seconds
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
                   m_segments.seconds() + m_focus.seconds() + m_sceneTransfer.seconds() +
-                  m_transfer.seconds(),
-          .materials = m_materials.seconds() + m_hasVoxels.seconds() + m_plan.seconds() +
-                       m_skin.seconds() + m_labelWeights.seconds() + m_tint.seconds() +
-                       m_interfaces.seconds() + m_tintContrast.seconds() +
-                       m_adjustedTint.seconds() + m_mixture.seconds(),
+                  m_hasVoxels.seconds() + m_content.seconds() + m_transfer.seconds(),
+          .materials = m_materials.seconds() + m_plan.seconds() + m_skin.seconds() +
+                       m_labelWeights.seconds() + m_tint.seconds() + m_interfaces.seconds() +
+                       m_tintContrast.seconds() + m_adjustedTint.seconds() + m_mixture.seconds(),
           .classify = m_minMaxGrid.seconds() + m_occupiedBounds.seconds() + m_contrast.seconds() +
                       m_style.seconds() + m_majorants.seconds(),
           .focus = clip.focusSeconds,

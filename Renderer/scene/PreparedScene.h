@@ -92,8 +92,8 @@ private:
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
-                    s.m_focus, s.m_sceneTransfer, s.m_transfer, s.m_materials, s.m_hasVoxels,
-                    s.m_skin, s.m_plan, s.m_labelWeights, s.m_tint, s.m_interfaces,
+                    s.m_focus, s.m_sceneTransfer, s.m_hasVoxels, s.m_content, s.m_transfer,
+                    s.m_materials, s.m_skin, s.m_plan, s.m_labelWeights, s.m_tint, s.m_interfaces,
                     s.m_tintContrast, s.m_adjustedTint, s.m_mixture, s.m_focusWarnings, s.m_view,
                     s.m_minMaxGrid, s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip,
                     s.m_contrast, s.m_style, s.m_majorants, s.m_features);
@@ -108,10 +108,11 @@ private:
   CachedStage<&Input::segments> m_segments; ///< unused without a focus or materials
   CachedStage<&makeFocus> m_focus;
   CachedStage<&Input::transfer> m_sceneTransfer; ///< unused with --transfer
+  CachedStage<&findNonEmpty> m_hasVoxels;        ///< unused without segments
+  CachedStage<&findContent> m_content;           ///< unused if the transfer function is given
   CachedStage<&chooseTransfer> m_transfer;
-  CachedStage<&findMaterials> m_materials; ///< this and the next five: unused without materials
-  CachedStage<&findNonEmpty> m_hasVoxels;
-  CachedStage<&findSkin> m_skin; ///< unused unless the materials detect skin
+  CachedStage<&findMaterials> m_materials; ///< this and the next four: unused without materials
+  CachedStage<&findSkin> m_skin;           ///< unused unless the materials detect skin
   CachedStage<&makeTintPlan> m_plan;
   CachedStage<&computeLabelWeights> m_labelWeights;
   CachedStage<&buildTint> m_tint;

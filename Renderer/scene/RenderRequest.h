@@ -93,7 +93,7 @@ struct RenderRequest {
       {}; ///< file or preset name; by default the scene's, else derived from the volume
   double shift = 0.0;
   double density = 1.0;
-  std::string lights = "cinema";       ///< file, preset name, or inline JSON
+  std::string lights = "theatre-wet";  ///< file, preset name, or inline JSON
   std::optional<Rgb> environment = {}; ///< replaces the lights' own environment
   std::optional<std::filesystem::path> environmentMap = {};
   ViewRequest view;

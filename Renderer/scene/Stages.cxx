@@ -10,13 +10,6 @@
 namespace fenestra {
 namespace {
 
-TransferFunction fitToVolume(const TransferFile& transfer, const Volume& volume) {
-  if (!transfer.isRelative)
-    return transfer.function;
-  const auto [low, high] = findRobustRange(volume);
-  return transfer.mapRange(low, high);
-}
-
 constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< by Modality
 
 /// Throws Error (input) if the extinction is too large. Because of null collisions, render time is
@@ -90,7 +83,7 @@ Domain makeDomain(const VolumeHandle& volume, const SettingsHandle& settings) {
 
 /// As chooseTransfer(), before shift and scale.
 TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>& named,
-                              const Handle<SceneTransfer>& scene,
+                              const Handle<SceneTransfer>& scene, const ScanContent& content,
                               const std::optional<Modality>& modality) {
   std::vector<Message> warnings;
   if (named && !modality && named->source.starts_with("ct-") &&
@@ -99,7 +92,7 @@ TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>&
                                    "the transfer function is for CT, but this volume does not seem "
                                    "to be CT"));
   if (named && (!modality || isPlausibleModality(*modality, volume)))
-    return {fitToVolume(named->transfer, volume), named->source, warnings};
+    return {fitToVolume(named->transfer, volume, content), named->source, warnings};
   if (named)
     warnings.push_back(makeMessage(
         ErrorCode::implausiblePresetModality, named->source,
@@ -107,10 +100,11 @@ TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>&
         ", which does not seem to be this volume's modality, so a default is used"));
   else if (scene->transfer)
     return {*scene->transfer, scene->name};
-  const std::optional<std::string> preset = chooseTransferPreset(volume);
+  const std::optional<std::string> preset = chooseTransferPreset(volume, content);
   if (!preset)
     return {makeRelativeTransfer(volume), "by the volume's range", warnings};
-  return {findTransfer(*preset, Input({})).transfer.function, *preset, warnings, true};
+  return {fitToVolume(findTransfer(*preset, Input({})).transfer, volume, content), *preset,
+          warnings, true};
 }
 
 /// The requested plane, else a plane fitted to the focus.
@@ -196,12 +190,24 @@ FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<st
   return {segments->segmentation.makeFocusMask(names, volume, shaping)};
 }
 
+bool needsContent(const Handle<NamedTransfer>& named, const Handle<SceneTransfer>& scene) {
+  return named ? named->transfer.scalars == TransferFile::Scalars::tissues : !scene->transfer;
+}
+
+ScanContent findContent(const VolumeHandle& volume, const Handle<SegmentsInput>& segments,
+                        const Handle<std::vector<bool>>& hasVoxels,
+                        const std::vector<std::string>& focus) {
+  return describeScan(volume->volume, segments->segmentation, *hasVoxels, focus);
+}
+
 TransferChoice chooseTransfer(const VolumeHandle& read, const Handle<NamedTransfer>& named,
                               const Handle<SceneTransfer>& scene,
+                              const Handle<ScanContent>& content,
                               const std::optional<Modality>& modality, double shift,
                               double density) {
   const Volume& volume = read->volume;
-  TransferChoice transfer = selectTransfer(volume, named, scene, modality);
+  TransferChoice transfer =
+      selectTransfer(volume, named, scene, content ? *content : ScanContent(), modality);
   transfer.function = transfer.function.withShift(shift).withDensity(density);
   checkExtinction(transfer.function, volume, named ? transfer.source : volume.name);
   if (transfer.function.shading && volume.minimum == volume.maximum)

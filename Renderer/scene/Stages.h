@@ -9,6 +9,7 @@
 #include "scene/AutomaticView.h"
 #include "scene/CachedStage.h"
 #include "scene/Contrast.h"
+#include "scene/DefaultTransfer.h"
 #include "scene/Input.h"
 #include "scene/NamedPresets.h"
 #include "scene/SegmentTint.h"
@@ -34,6 +35,13 @@ NamedLights makeLights(const std::string& name, const std::optional<Rgb>& enviro
 FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<std::string>& names,
                      const MaskShaping& shaping, const Grid& volume);
 
+/// True if chooseTransfer() depends on the content of the scan.
+bool needsContent(const Handle<NamedTransfer>& named, const Handle<SceneTransfer>& scene);
+
+ScanContent findContent(const VolumeHandle& volume, const Handle<SegmentsInput>& segments,
+                        const Handle<std::vector<bool>>& hasVoxels,
+                        const std::vector<std::string>& focus);
+
 struct TransferChoice {
   TransferFunction function;
   std::string source; ///< a file, a preset, a node, or "by the volume's range"
@@ -41,10 +49,12 @@ struct TransferChoice {
   bool isByModality = false; ///< a preset, chosen as a default
 };
 /// Chooses the transfer function: `named`, unless `modality` is not the volume's, else the
-/// scene's, else a default for the volume. Then shifts it by `shift` and scales its extinction by
-/// `density`. Throws Error (input) if the volume cannot be rendered with it.
+/// scene's, else a default for the volume and its `content` (null: no segments). Then shifts it by
+/// `shift` and scales its extinction by `density`. Throws Error (input) if the volume cannot be
+/// rendered with it.
 TransferChoice chooseTransfer(const VolumeHandle& volume, const Handle<NamedTransfer>& named,
                               const Handle<SceneTransfer>& scene,
+                              const Handle<ScanContent>& content,
                               const std::optional<Modality>& modality, double shift,
                               double density);
 

@@ -79,8 +79,8 @@ TEST(Background, EqualColorsGiveAConstantBackground) {
   EXPECT_EQ((renderEmptyScene(background).at(0, 0).mean - background.color).abs().maxCoeff(), 0.0);
 }
 
-TEST(Background, DefaultIsDarkGrayAndLighterAtTheTop) {
-  const Background background = Background::makeDefault();
+TEST(Background, DarkGradientIsLighterAtTheTop) {
+  const Background background = Background::makeDarkGradient();
   EXPECT_LT((background.evaluate(1.0) - Rgb(0.060, 0.066, 0.078)).abs().maxCoeff(), 1e-12);
   EXPECT_LT((background.evaluate(0.0) - Rgb(0.012, 0.013, 0.016)).abs().maxCoeff(), 1e-12);
   const Film film = renderEmptyScene(background);

@@ -139,13 +139,6 @@ TEST(TransparentFraction, CountsFocusVoxelsWithoutExtinction) {
   EXPECT_EQ(transparentFraction(focus, volume, makeTransfer(50.0)), 1.0);
 }
 
-TEST(DefaultTransfer, HounsfieldRangeGivesACtPreset) {
-  EXPECT_TRUE(chooseTransferPreset(makeRamp(-1000, 1500)));
-  EXPECT_TRUE(chooseTransferPreset(makeRamp(-8192, 3071))) << "padded";
-  EXPECT_FALSE(chooseTransferPreset(makeRamp(0, 255)));
-  EXPECT_FALSE(chooseTransferPreset(makeRamp(0, 4000)));
-}
-
 TEST(AirThreshold, FollowsTheModalityAndIsMissingForMaskedBackgrounds) {
   EXPECT_EQ(findAirThreshold(makeRamp(-1000, 1500)), -300.0);
   const auto makeHead = [](double air) {
@@ -159,16 +152,6 @@ TEST(AirThreshold, FollowsTheModalityAndIsMissingForMaskedBackgrounds) {
   EXPECT_LT(*level, 380.0);
   EXPECT_FALSE(findAirThreshold(makeHead(0.0))) << "masked background";
   EXPECT_FALSE(findAirThreshold(makeRamp(7, 7))) << "constant";
-}
-
-TEST(DefaultTransfer, RangeRunsFromTransparentToOpaqueAndAConstantIsVisible) {
-  const TransferFunction transfer = makeRelativeTransfer(makeRamp(0, 1000));
-  EXPECT_EQ(transfer.extinction(0.0).value(), 0.0);
-  EXPECT_GT(transfer.extinction(1000.0).value(), 1.0);
-  EXPECT_TRUE(transfer.shading);
-  const TransferFunction flat = makeRelativeTransfer(makeRamp(7, 7));
-  EXPECT_GT(flat.extinction(7.0).value(), 0.0);
-  EXPECT_FALSE(flat.shading);
 }
 
 TEST(FilmImage, PlaneLiesThroughTheTargetWithTheCornersOfTheImage) {

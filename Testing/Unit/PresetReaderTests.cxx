@@ -112,7 +112,8 @@ TEST(PresetReader, ReadsEveryBuiltInPreset) {
         // Scalars of MR and ultrasound have no absolute scale.
         const TransferFile transfer =
             parseTransferJson(findResource("transfer/" + value + ".json"), value);
-        EXPECT_EQ(transfer.isRelative, preset.modality != Modality::ct);
+        EXPECT_EQ(transfer.scalars == TransferFile::Scalars::absolute,
+                  preset.modality == Modality::ct);
       }
   }
 }

@@ -34,22 +34,33 @@ TEST(TransferReader, RelativeScalarsAreFractionsOfAScalarRange) {
   const std::string rest =
       R"("extinction": [[0.5, 0], [1, 4]], "albedo": [[0, 0, 0, 0], [1, 1, 1, 1]]})";
   const TransferFile relative = parseTransferJson(R"({"scalars": "relative", )" + rest, "test");
-  ASSERT_TRUE(relative.isRelative);
-  const TransferFunction f = relative.mapRange(-100, 300);
+  ASSERT_EQ(relative.scalars, TransferFile::Scalars::relative);
+  const TransferFunction f = relative.mapScalars(std::array{-100.0, 300.0});
   EXPECT_DOUBLE_EQ(f.extinction(100)[0], 0.0);
   EXPECT_DOUBLE_EQ(f.extinction(200)[0], 2.0);
   EXPECT_DOUBLE_EQ(f.extinction(300)[0], 4.0);
   EXPECT_NEAR(f.albedo(0)[1], 0.25, 1e-12);
   for (const std::string& start : {std::string(R"({"scalars": "absolute", )"), std::string("{")}) {
     const TransferFile absolute = parseTransferJson(start + rest, "test");
-    EXPECT_FALSE(absolute.isRelative);
-    EXPECT_DOUBLE_EQ(absolute.mapRange(-100, 300).extinction(0.75)[0], 2.0);
+    EXPECT_EQ(absolute.scalars, TransferFile::Scalars::absolute);
   }
   const TemporaryFolder folder;
   const auto file = folder.write("relative.json", R"({"scalars": "relative", )" + rest);
   expectRefused(file, "invalid-field: scalars", [&] { readTransferFunction(file); });
   expectRefused("test", "invalid-field: scalars",
                 [&] { parseTransferJson(R"({"scalars": "percent", )" + rest, "test"); });
+}
+
+TEST(TransferReader, ScalarsOfTissuesAreMappedPiecewiseLinearly) {
+  const TransferFile file =
+      parseTransferJson(R"({"scalars": "tissues", "extinction": [[-1, 0], [1, 1], [2.5, 2], [4, 3]],
+                            "albedo": [[0, 1, 1, 1]]})",
+                        "test");
+  ASSERT_EQ(file.scalars, TransferFile::Scalars::tissues);
+  const TransferFunction f = file.mapScalars(std::array{0.0, 40.0, 100.0, 140.0});
+  const std::pair<double, double> knots[] = {{-40.0, 0.0}, {40.0, 1.0}, {120.0, 2.0}, {180.0, 3.0}};
+  for (const auto& [scalar, extinction] : knots)
+    EXPECT_DOUBLE_EQ(f.extinction(scalar)[0], extinction) << scalar;
 }
 
 TEST(TransferReader, ColorIsTheReflectedColor) {

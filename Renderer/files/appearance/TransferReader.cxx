@@ -43,7 +43,8 @@ TransferFile readFenestraJson(const JsonNode& root) {
   transfer.g = g;
   transfer.shading = readShading(root, g);
   const auto scalars = root.find("scalars");
-  return {std::move(transfer), scalars && scalars->choice({"absolute", "relative"}) == 1};
+  const std::size_t unit = scalars ? scalars->choice({"absolute", "relative", "tissues"}) : 0;
+  return {std::move(transfer), static_cast<TransferFile::Scalars>(unit)};
 }
 
 // ---- Slicer's .vp.json
@@ -203,15 +204,16 @@ VolumeProperty readVp(std::string_view content, const std::string& source) {
 
 } // namespace
 
-TransferFunction TransferFile::mapRange(double low, double high) const {
+TransferFunction TransferFile::mapScalars(std::span<const double> anchors) const {
+  const auto mapPosition = [&](auto& knot) {
+    const double last = static_cast<double>(anchors.size() - 2);
+    const auto i = static_cast<std::size_t>(std::clamp(std::floor(knot.position), 0.0, last));
+    const double fraction = knot.position - static_cast<double>(i);
+    knot.position = anchors[i] + fraction * (anchors[i + 1] - anchors[i]);
+  };
   TransferFunction result = function;
-  if (isRelative) {
-    const auto mapPosition = [&](auto& knot) {
-      knot.position = low + knot.position * (high - low);
-    };
-    result.extinction = function.extinction.withKnots(mapPosition);
-    result.albedo = function.albedo.withKnots(mapPosition);
-  }
+  result.extinction = function.extinction.withKnots(mapPosition);
+  result.albedo = function.albedo.withKnots(mapPosition);
   return result;
 }
 
@@ -242,7 +244,7 @@ TransferFile readTransferFile(const std::filesystem::path& path) {
 
 TransferFunction readTransferFunction(const std::filesystem::path& path) {
   TransferFile file = readTransferFile(path);
-  if (file.isRelative)
+  if (file.scalars != TransferFile::Scalars::absolute)
     throw fieldError(path, "scalars",
                      "are relative to a volume; give a file with absolute scalars");
   return std::move(file.function);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -13,12 +14,13 @@ namespace fenestra {
 /// Content of a transfer function file.
 struct TransferFile {
   TransferFunction function;
-  /// True if scalars have no unit, as in MR and ultrasound; 0 and 1 then stand for the lower and
-  /// upper end of a volume's usual range (see mapRange).
-  bool isRelative = false;
+  /// What the function's scalars are. MR and ultrasound have no unit: there, scalars are relative
+  /// to a volume's range (0: lower end, 1: upper end), or to its tissues (TissueScale).
+  enum class Scalars { absolute, relative, tissues } scalars = Scalars::absolute;
 
-  /// Function with 0 mapped to `low` and 1 to `high` if relative; otherwise unchanged.
-  TransferFunction mapRange(double low, double high) const;
+  /// Function whose scalars 0, 1, ... are moved to `anchors`, at least two and ascending, linearly
+  /// between and beyond them.
+  TransferFunction mapScalars(std::span<const double> anchors) const;
 };
 
 /// Reads a file by extension: `.vp` (Slicer, text), `.vp.json` (Slicer; first component of the

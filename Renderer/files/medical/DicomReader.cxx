@@ -63,6 +63,7 @@ struct HeaderField {
 constexpr std::array dicomFields = {
     HeaderField{0x0008, 0x0060, &DicomHeader::modality},
     HeaderField{0x0008, 0x103e, &DicomHeader::seriesDescription},
+    HeaderField{0x0018, 0x0010, &DicomHeader::contrastAgent},
     HeaderField{0x0020, 0x000e, &DicomHeader::seriesUid},
     HeaderField{0x0020, 0x0011, &DicomHeader::seriesNumber},
     HeaderField{0x0020, 0x0032, &DicomHeader::position},

@@ -16,6 +16,7 @@ namespace fenestra {
 struct DicomHeader {
   std::string seriesUid, seriesNumber, seriesDescription, modality;
   std::string photometric;
+  std::string contrastAgent;           ///< ContrastBolusAgent; empty: none stated
   std::vector<double> position;        ///< ImagePositionPatient: center of the first voxel, LPS mm
   std::vector<double> orientation;     ///< ImageOrientationPatient: row and column direction, LPS
   std::vector<double> pixelSpacing;    ///< mm between rows, between columns

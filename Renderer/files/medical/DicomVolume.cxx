@@ -180,6 +180,15 @@ bool isUnscaledCt(const std::vector<Slice>& slices) {
   });
 }
 
+/// Modality of a series; empty: another one.
+std::optional<Modality> parseModality(const std::string& text) {
+  if (text == "CT")
+    return Modality::ct;
+  if (text == "MR")
+    return Modality::mr;
+  return text == "US" ? std::optional(Modality::us) : std::nullopt;
+}
+
 Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
   DicomReader files;
   std::vector<Slice> slices;
@@ -197,6 +206,9 @@ Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
   const Grid grid = makeGrid(slices, axes, computeStep(slices, axes, name, warnings));
   Volume volume = makeVolume(name, grid, readAll(files, slices));
   std::ranges::move(warnings, std::back_inserter(volume.warnings));
+  const DicomHeader& header = slices.front().header;
+  volume.modality = parseModality(header.modality);
+  volume.hasContrastAgent = !trim(header.contrastAgent).empty();
   if (isUnscaledCt(slices))
     correctHounsfieldOffset(volume);
   return volume;

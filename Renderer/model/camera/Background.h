@@ -19,9 +19,12 @@ struct Background {
     return {Kind::gradient, Rgb::Zero(), bottom, top};
   }
 
-  /// Default background: a dark gray gradient, lighter at the top. Dark organs and the end of a
-  /// scan remain visible in front of it. The edge colors below are linear.
-  static Background makeDefault() {
+  /// Default background: nearly black, as in an operating theatre's spotlight.
+  static Background makeDark() { return {Kind::color, Rgb(0.004, 0.0042, 0.005)}; }
+  /// Middle gray, on which both dark and light tissue stand out.
+  static Background makeGray() { return {Kind::color, Rgb::Constant(0.18)}; }
+  /// A dark gray gradient, lighter at the top. The edge colors below are linear.
+  static Background makeDarkGradient() {
     return makeGradient(encodeSrgb({0.012, 0.013, 0.016}), encodeSrgb({0.060, 0.066, 0.078}));
   }
 

@@ -8,6 +8,7 @@
 #include "model/volume/Grid.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -32,6 +33,8 @@ struct Volume {
   double maximum = 0.0;
   std::string name; ///< file name, for messages
   std::vector<Message> warnings;
+  std::optional<Modality> modality = {}; ///< stated by the file; empty: not stated, or another one
+  bool hasContrastAgent = false;         ///< the file states a contrast agent
 };
 
 /// Computes minimum and maximum from the voxels.
