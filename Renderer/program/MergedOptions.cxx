@@ -4,6 +4,7 @@
 #include "files/images/ImageFormat.h"
 #include "files/slicer/MrmlScene.h"
 #include "io/MessageText.h"
+#include "program/PaperConditions.h"
 #include "program/UsageError.h"
 #include "scene/Defaults.h"
 #include "scene/NamedPresets.h"
@@ -159,9 +160,10 @@ std::string findRejectionReason(const Input& input, const std::string& name,
 } // namespace
 
 PresetOptions mergePreset(const OptionValues& given, const Input& input) {
-  PresetOptions result{given};
+  const auto isExplicit = [&given](const std::string& name) { return isGiven(given, name); };
   if (!given.has("preset"))
-    return result;
+    return {addPaperConditions(given, isExplicit)};
+  PresetOptions result{given};
   const bool givenFocus = given.has("focus");
   const bool byNames = given.text("preset") == "auto" || !givenFocus;
   const auto names = byNames ? input.segmentNames({given.text("volume"), given.text("segmentation"),
@@ -171,9 +173,11 @@ PresetOptions mergePreset(const OptionValues& given, const Input& input) {
   OptionValues& values = result.values;
   if (!givenFocus && names)
     addFocus(preset, *names, values);
+  values = addPaperConditions(values, isExplicit);
+  const OptionValues preferred = values;
   for (const auto& [name, value] : preset.options) {
     const Option& option = findPresetOption(name, *given.text("preset"));
-    if (isOverridden(option, given) || (isClipOption(option) && !values.has("focus")))
+    if (isOverridden(option, preferred) || (isClipOption(option) && !values.has("focus")))
       continue;
     values.remove(option.name);
     values.add(option.name, value);

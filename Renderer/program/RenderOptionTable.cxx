@@ -1,5 +1,6 @@
 #include "program/RenderOptions.h"
 
+#include "program/PaperConditions.h"
 #include "program/Quality.h"
 #include "program/RenderOptionValues.h"
 #include "scene/NamedPresets.h"
@@ -72,6 +73,7 @@ struct RenderOptionTable {
        "Image to write: .png or .tif (for display), .exr (all channels) or .nrrd (linear RGBA, and "
        "depth); may be repeated [INPUT.png]",
        ValueSpec::outputImage().bind(options.outputs), OverrideGroup::process},
+      {"paper", "", sceneGroup, describePaperConditions(), ValueSpec::notInPanel()},
       {"margin", "MM,...", clipGroup,
        "Grows the focus by this distance, or shrinks it (negative): one value for all its "
        "segments, or one per segment [0]",
@@ -173,7 +175,12 @@ struct RenderOptionTable {
        ".json file, inline JSON, a preset such as ct-anatomy, or a volume property of the scene or "
        "of "
        "3D Slicer by name, such as CT-AAA [the scene's, else by modality]",
-       ValueSpec::text().bind(scene.transfer).withNamedValues(listBuiltinPresets("transfer"))},
+       ValueSpec::text()
+           .bind(scene.transfer)
+           .withNamedValues(listBuiltinPresets("transfer"))
+           .withAliases({{"ct-liver", "ct-anatomy"},
+                         {"ct-heart", "ct-contrast"},
+                         {"mr-brain", "mr-anatomy"}})},
       {OptionNames("transfer-shift", "shift"), "X", appearanceGroup,
        "Shifts the transfer function to higher (or lower) voxel values",
        ValueSpec::number(-1e30, 1e30).bind(scene.shift)},

@@ -70,7 +70,7 @@ std::string_view findNoEffectReason(Requires requirement, bool hasFocus, bool ha
   if ((requirement == Requires::surface || requirement == Requires::spline) && !isSurface)
     return "used only with --clip surface and ghost; omit it";
   if (requirement == Requires::spline && boundary != Boundary::spline)
-    return "used only with --clip-boundary spline; omit it";
+    return "used only with --clip-boundary spline; add that, or omit it";
   return "";
 }
 

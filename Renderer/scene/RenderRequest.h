@@ -36,7 +36,7 @@ struct ClipRequest {
   /// labels (chooseSmoothing) in the modes surface, hole and cutaway, else 0.
   std::optional<double> softness = {};
   /// A plane uses only the offset. `mode` and `softness` replace the corresponding members.
-  SurfaceOptions surface = {};
+  SurfaceOptions surface = {.boundary = Boundary::exact};
 
   ClipMode resolveMode(bool hasFocus) const {
     return mode.value_or(hasFocus ? ClipMode::surface : ClipMode::none);

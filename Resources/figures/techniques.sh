@@ -50,7 +50,7 @@ liver=$data/torso_ct_ccth_a01
 if [ -d "$liver" ]; then
   compare_techniques liver "Liver (CT of the collection CC-Tumor-Heterogeneity, TCIA, CC BY 4.0)" "$liver/ct.nii.gz" \
     --segmentation "$liver/seg_totalsegmentator_rtstruct.nii.gz" --materials none --focus 1 --label-smoothing 2 \
-    --transfer ct-liver --view anterior
+    --transfer ct-anatomy --view anterior
 else
   printf '\n**Liver**: SKIPPED: FENESTRA_DATA has no torso_ct_ccth_a01.\n' >>"$page"
 fi

@@ -71,7 +71,7 @@ Node* vtkSlicerFenestraLogic::GetSettings() {
   node->SetSingletonTag("Settings");
   node->SetHideFromEditors(true);
   node->SetFlags(
-      {{"samples", "256"}, {"noise", "0.05"}, {"size", "512x512"}, {"background", "gradient"}});
+      {{"samples", "256"}, {"noise", "0.05"}, {"size", "512x512"}, {"background", "dark"}});
   return Node::SafeDownCast(scene->AddNode(node));
 }
 

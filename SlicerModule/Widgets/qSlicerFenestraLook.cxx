@@ -36,10 +36,11 @@ qSlicerFenestraLook::qSlicerFenestraLook(QWidget* parent)
     : QWidget(parent), d_ptr(new qSlicerFenestraLookPrivate) {
   Q_D(qSlicerFenestraLook);
   d->setupUi(this);
-  setItemData(d->TransferBox, {"", "ct-soft", "ct-bone", "ct-skeleton", "ct-liver", "ct-heart",
-                               "ct-lung", "mr-brain", "mr-knee", "us-fetal"});
-  setItemData(d->RigBox, {"", "cinema", "studio", "headlight", "soft", "amber"});
-  setItemData(d->BackgroundBox, {"gradient", "0,0,0", "0.1,0.1,0.1", "100,100,100", "transparent"});
+  setItemData(d->TransferBox, {"", "ct-anatomy", "ct-contrast", "ct-lung", "ct-bone", "ct-skin",
+                               "ct-soft", "ct-skeleton", "mr-anatomy", "mr-knee", "us-fetal"});
+  setItemData(d->RigBox, {"", "theatre-wet", "theatre", "cinema", "studio", "headlight", "soft",
+                          "amber"});
+  setItemData(d->BackgroundBox, {"dark", "gradient", "gray", "100,100,100", "transparent"});
   setItemData(d->ToneBox, {defaultTone, "photographic"});
   d->defaultTransfer = d->TransferBox->itemText(0);
   d->defaultRig = d->RigBox->itemText(0);

@@ -116,7 +116,7 @@ TEST_F(FilesCommand, RejectsMissingOrDamagedAppearance) {
   expectErrors(
       {
           {"transfer preset", makeArguments("--transfer", "ct-bones"), 3,
-           "ct-bones: | ct-bone, ct-heart, ct-liver"},
+           "ct-bones: | ct-anatomy, ct-bone, ct-contrast"},
           {"transfer file", makeArguments("--transfer", "missing.vp"), 3, "missing.vp:"},
           {"truncated .json", makeArguments("--transfer", "cut.json"), 3, "cut.json:"},
           {"word for a number", makeArguments("--transfer", "word.json"), 3, "extinction[0][1]: "},

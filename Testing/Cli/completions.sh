@@ -34,7 +34,7 @@ fenestra serve scan.nrrd --noise-target de|denoised
 fenestra phantom kn|knee
 fenestra phantom cube --ed|--edge
 fenestra describe zs|zsh
-fenestra scan.nrrd --transfer ct-li|ct-liver
+fenestra scan.nrrd --transfer ct-an|ct-anatomy
 fenestra --preset brain-t|brain-tumor
 fenestra --lights ci|cinema
 fenestra --layers den|denoised

@@ -19,14 +19,16 @@ QJsonArray parseLights(const QString& rig) {
 }
 
 int checkRigs() {
-  for (const char* rig : {"cinema", "studio", "headlight", "soft", "amber"}) {
-    CHECK_STD_STRING(makeFlag(rig, unchanged).toStdString(), std::string(rig));
-    const QJsonArray lights = parseLights(makeFlag(rig, {1.0, 1.0, 1.0, 2.0}));
+  for (const std::string rig :
+       {"theatre-wet", "theatre", "cinema", "studio", "headlight", "soft", "amber"}) {
+    CHECK_STD_STRING(makeFlag(rig.c_str(), unchanged).toStdString(), rig);
+    const QJsonArray lights = parseLights(makeFlag(rig.c_str(), {1.0, 1.0, 1.0, 2.0}));
     CHECK_BOOL(lights.isEmpty(), false);
     CHECK_STD_STRING(lights.last().toObject()["type"].toString().toStdString(),
-                     std::string(rig) == "cinema" ? "sky" : "environment");
+                     rig == "cinema" || rig.rfind("theatre", 0) == 0 ? "sky" : "environment");
   }
   const std::map<QString, Has> expected = {{"cinema", {true, true, true, true}},
+                                           {"theatre-wet", {true, true, true, true}},
                                            {"amber", {true, true, false, true}},
                                            {"headlight", {true, false, false, true}},
                                            {"soft", {false, false, false, true}},

@@ -54,7 +54,7 @@ int checkDefaults(const Panel& panel, vtkMRMLNode* volume, vtkMRMLNode* segmenta
   panel.find<QSpinBox>("SamplesBox")->setValue(255); // writes all flags of the panel
   for (const char* usual : {"transfer", "lights", "exposure", "tone", "preset", "clip"})
     CHECK_STD_STRING(panel.flag(usual), "");
-  CHECK_STD_STRING(panel.flag("background"), "gradient");
+  CHECK_STD_STRING(panel.flag("background"), "dark");
   return EXIT_SUCCESS;
 }
 

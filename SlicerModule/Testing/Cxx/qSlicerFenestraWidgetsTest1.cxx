@@ -53,21 +53,22 @@ Flags takeFlags(const Look& look) {
 
 int checkLookDefaults() {
   Look look;
-  const Flags gradient = {{"background", "gradient"}};
-  CHECK_BOOL(takeFlags(look) == gradient, true);
-  look.show(gradient, {}, false);
-  CHECK_BOOL(takeFlags(look) == gradient, true);
-  for (const char* preset : {"ct-soft", "ct-bone", "ct-skeleton", "ct-liver", "ct-heart", "ct-lung",
-                             "mr-brain", "mr-knee", "us-fetal"}) {
+  const Flags dark = {{"background", "dark"}};
+  CHECK_BOOL(takeFlags(look) == dark, true);
+  look.show(dark, {}, false);
+  CHECK_BOOL(takeFlags(look) == dark, true);
+  for (const char* preset :
+       {"ct-anatomy", "ct-contrast", "ct-lung", "ct-bone", "ct-skin", "ct-soft", "ct-skeleton",
+        "mr-anatomy", "mr-knee", "us-fetal"}) {
     choose(look, "TransferBox", preset);
     CHECK_STD_STRING(takeFlags(look)["transfer"], std::string(preset));
   }
-  for (const char* rig : {"cinema", "studio", "headlight", "soft", "amber"}) {
+  for (const char* rig : {"theatre-wet", "theatre", "cinema", "studio", "headlight", "soft", "amber"}) {
     choose(look, "RigBox", rig);
     CHECK_STD_STRING(takeFlags(look)["lights"], std::string(rig));
   }
   look.resetToPreset();
-  CHECK_BOOL(takeFlags(look) == gradient, true);
+  CHECK_BOOL(takeFlags(look) == dark, true);
   choose(look, "ToneBox", "photographic");
   CHECK_STD_STRING(takeFlags(look)["tone"], "photographic");
   number(look, "ExposureBox").setValue(-0.75);
