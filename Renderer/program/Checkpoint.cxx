@@ -35,20 +35,6 @@ ordered_json collectOptions(const OptionValues& options, const fs::path& folder,
   return collected;
 }
 
-/// Stored options, with the new spellings of names and values from version 0.1.
-json resolveAliases(const json& options) {
-  json resolved = json::object();
-  for (const auto& [name, values] : options.items()) {
-    const Option* const option = findOption(renderSyntax.options, name);
-    json& target = resolved[option ? option->name : name] = values;
-    if (option && target.is_array())
-      for (json& value : target)
-        if (value.is_string())
-          value = option->resolveAlias(value.get<std::string>());
-  }
-  return resolved;
-}
-
 std::string joinValues(const json& options, const std::string& name) {
   if (!options.contains(name))
     return "not given";
@@ -58,8 +44,7 @@ std::string joinValues(const json& options, const std::string& name) {
 }
 
 /// First option in which two objects of options differ; empty: none.
-std::string findOptionDifference(const json& storedOptions, const json& currentOptions) {
-  const json stored = resolveAliases(storedOptions), current = resolveAliases(currentOptions);
+std::string findOptionDifference(const json& stored, const json& current) {
   std::set<std::string> names;
   for (const json* options : {&stored, &current})
     for (const auto& [name, values] : options->items())

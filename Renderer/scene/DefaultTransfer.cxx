@@ -110,7 +110,7 @@ std::optional<std::string> chooseTransferPreset(const Volume& volume, const Scan
   }
   if (volume.modality == Modality::us)
     return "us-fetal";
-  if (volume.modality == Modality::mr || content.brain)
+  if (volume.modality == Modality::mr || !content.brain.empty())
     return "mr-anatomy";
   return std::nullopt;
 }
@@ -128,10 +128,10 @@ TransferFunction fitToVolume(const TransferFile& transfer, const Volume& volume,
   return transfer.function;
 }
 
-TissueScale findTissues(const Volume& volume, const std::optional<std::vector<double>>& brain) {
+TissueScale findTissues(const Volume& volume, const std::vector<double>& brain) {
   constexpr double background = 0.06;
   const auto [low, high] = findRobustRange(volume);
-  std::vector<double> values = brain ? *brain : sampleValues(volume);
+  std::vector<double> values = brain.empty() ? sampleValues(volume) : brain;
   const double least = low + background * (high - low);
   std::erase_if(values, [least](double value) { return value < least; });
   std::ranges::sort(values);

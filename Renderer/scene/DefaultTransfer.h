@@ -20,9 +20,9 @@ using TissueScale = std::array<double, 4>;
 /// What the segments say about a scan.
 struct ScanContent {
   bool hasSegments = false;
-  bool isLungFocus = false;                      ///< all segments of the focus are of the lungs
-  std::optional<double> blood = {};              ///< value of blood in the aorta or the heart
-  std::optional<std::vector<double>> brain = {}; ///< values in the brain; empty: not segmented
+  bool isLungFocus = false;         ///< all segments of the focus are of the lungs
+  std::optional<double> blood = {}; ///< value of blood in the aorta or the heart
+  std::vector<double> brain = {};   ///< values in the brain; empty: not segmented
 };
 
 /// Reads the values of blood and brain under the segments of a volume. Blood is the greatest median
@@ -44,10 +44,10 @@ TransferFunction fitToVolume(const TransferFile& transfer, const Volume& volume,
                              const ScanContent& content);
 
 /// Scale of the tissues of a head in MR: the centers of three classes (Lloyd's algorithm, 1982) of
-/// the values in `brain`, else of all that are above the lowest 6 % of the robust range. Tissues
-/// have no fixed values in MR, and percentiles depend on how much of the scan is air, scalp or
-/// fluid. Evenly spaced if the volume has fewer than three values.
-TissueScale findTissues(const Volume& volume, const std::optional<std::vector<double>>& brain);
+/// the values in `brain`, or without any, of all that are above the lowest 6 % of the robust range.
+/// Tissues have no fixed values in MR, and percentiles depend on how much of the scan is air, scalp
+/// or fluid. Evenly spaced if the volume has fewer than three values.
+TissueScale findTissues(const Volume& volume, const std::vector<double>& brain);
 
 /// Transfer function for volumes without an absolute scale (MR, ultrasound, stored values). The
 /// opacity rises from transparent at the background level to opaque at the 99.5th percentile.

@@ -221,7 +221,7 @@ TEST_F(InspectCommand, ListsDicomSeries) {
   EXPECT_EQ(report["series"][0]["files"], 93);
   EXPECT_EQ(report["series"][0]["modality"], "CT");
   EXPECT_EQ(report["render"]["volume"]["size"], Json({64, 64, 93}));
-  EXPECT_EQ(report["render"]["look"]["name"], "ct-soft") << "a CT with air at 0";
+  EXPECT_EQ(report["render"]["look"]["name"], "ct-skin") << "a CT with air at 0";
   EXPECT_EQ(report["segmentations"], Json::array());
   const Json other = inspect({series.string(), "--volume", "none"});
   EXPECT_TRUE(other["render"].is_null());

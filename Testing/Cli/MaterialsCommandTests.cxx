@@ -112,7 +112,7 @@ TEST_F(MaterialsCommand, NeedNoFocusAndAreAFact) {
   const Outcome outcome = run(
       makeArguments({"--materials", "library", "--output", "a.png", "--verbose"}), folder.path());
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "transfer function: by the volume's range\nlights: cinema\n"
+  EXPECT_EQ(outcome.err, "transfer function: by the volume's range\nlights: theatre-wet\n"
                          "materials: library, 1 color\n");
 }
 

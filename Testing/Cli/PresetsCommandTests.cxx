@@ -41,21 +41,30 @@ bool hasLine(const std::set<std::string>& lines, const std::string& start) {
                      [&](const std::string& line) { return line.starts_with(start); });
 }
 
+/// Name of a preset file that sets lights, view and clip, beyond what the built-in ones do.
+std::string writeFullPreset() {
+  kneeFolder().write("full.json", R"({"title": "All", "modality": "MR",
+    "focus": {"names": ["femoral cartilage", "tibial cartilage"]},
+    "flags": {"materials": "none", "transfer": "mr-knee", "lights": "studio", "view": "anterior", "clip": "surface",
+              "clip-boundary": "spline", "label-smoothing": 0.6, "clip-softness": 2}})");
+  return "full.json";
+}
+
 Image readResult() {
   return readImage(kneeFolder() / "preset.exr");
 }
 
 TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
   const auto lines =
-      renderEcho(addSegments({"--preset", "knee-cartilage", "--stats-json", "s.json"}));
-  for (const char* line : {"preset: knee-cartilage", "focus: FemoralCartilage",
-                           "focus: TibialCartilage", "transfer: mr-knee", "clip: surface"})
+      renderEcho(addSegments({"--preset", writeFullPreset(), "--stats-json", "s.json"}));
+  for (const char* line : {"preset: full", "focus: FemoralCartilage", "focus: TibialCartilage",
+                           "transfer: mr-knee", "clip: surface"})
     EXPECT_TRUE(lines.contains(line)) << line;
   const Image byPreset = readResult();
-  EXPECT_EQ(byPreset.header.at("preset"), "knee-cartilage");
+  EXPECT_EQ(byPreset.header.at("preset"), "full");
   EXPECT_EQ(byPreset.header.at("look"), "mr-knee");
   const auto stats = nlohmann::json::parse(readBytes(kneeFolder() / "s.json"));
-  EXPECT_EQ(stats.at("preset"), "knee-cartilage");
+  EXPECT_EQ(stats.at("preset"), "full");
 
   Arguments written = {"--focus", "FemoralCartilage,TibialCartilage"};
   for (const std::string& line : lines)
@@ -72,30 +81,30 @@ TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
 
 TEST(PresetsCommand, OptionsOverrideThePreset) {
   const auto lines = renderEcho(
-      addSegments({"--preset", "knee-cartilage", "--view", "superior", "--clip", "cutaway",
+      addSegments({"--preset", writeFullPreset(), "--view", "superior", "--clip", "cutaway",
                    "--transfer", "ct-bone", "--focus", "Femur", "--scale", "70"}));
   for (const char* line : {"view: superior", "clip: cutaway", "transfer: ct-bone", "focus: Femur",
-                           "scale: 70", "lights: studio", "preset: knee-cartilage"})
+                           "scale: 70", "lights: studio", "preset: full"})
     EXPECT_TRUE(lines.contains(line)) << line;
   EXPECT_FALSE(hasLine(lines, "clip-boundary"));
   EXPECT_TRUE(
       hasLine(lines, "label-smoothing")); // still the preset's, since every clip mode uses it
   EXPECT_FALSE(lines.contains("focus: FemoralCartilage"));
-  // An option that conflicts with the preset's --clip-boundary also overrides it.
-  const auto others = renderEcho(addSegments(
-      {"--preset", "knee-cartilage", "--control-points", "20", "--position", "0,300,0"}));
+  // --control-points and --clip-boundary are alternatives: one overrides the preset's other.
+  const auto others = renderEcho(
+      addSegments({"--preset", "full.json", "--clip-boundary", "exact", "--position", "0,300,0"}));
   EXPECT_TRUE(others.contains("clip: surface"));
-  EXPECT_FALSE(hasLine(others, "clip-boundary"));
+  EXPECT_TRUE(others.contains("clip-boundary: exact"));
   EXPECT_FALSE(hasLine(others, "view"));
 }
 
 /// Slicer's panel passes all options, most with their default values.
 TEST(PresetsCommand, DefaultValuesFromSlicerDoNotOverrideThePreset) {
   const auto lines = renderEcho(addSegments(
-      {"--preset", "knee-cartilage", "--clip", "auto", "--clip-boundary", "spline",
+      {"--preset", writeFullPreset(), "--clip", "auto", "--clip-boundary", "exact",
        "--control-points", "50", "--lights", "soft", "--returnparameterfile", "r.txt"}));
   EXPECT_TRUE(lines.contains("clip: surface"));
-  EXPECT_TRUE(lines.contains("clip-boundary: exact"));
+  EXPECT_TRUE(lines.contains("clip-boundary: spline"));
   EXPECT_TRUE(lines.contains("lights: soft"));
 }
 
@@ -115,12 +124,14 @@ TEST(PresetsCommand, WithoutSegmentationSetsNeitherFocusNorClip) {
 
 /// A preset for another modality still renders, with the default transfer function.
 TEST(PresetsCommand, TransferFunctionForAnotherModalityIsReplacedWithAWarning) {
-  const Outcome outcome = renderKnee(addSegments({"--preset", "liver", "--focus", "Femur"}));
+  kneeFolder().write("ct.json", R"({"title": "CT", "modality": "CT", "focus": {"names": ["liver"]},
+    "flags": {"transfer": "ct-anatomy"}})");
+  const Outcome outcome = renderKnee(addSegments({"--preset", "ct.json", "--focus", "Femur"}));
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_TRUE(outcome.err.starts_with("fenestra: warning: ct-liver: ")) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("fenestra: warning: ct-anatomy: ")) << outcome.err;
   EXPECT_EQ(readResult().header.at("look"), "by the volume's range");
   EXPECT_EQ(
-      renderKnee(addSegments({"--preset", "liver", "--focus", "Femur", "--transfer", "mr-knee"}))
+      renderKnee(addSegments({"--preset", "ct.json", "--focus", "Femur", "--transfer", "mr-knee"}))
           .err,
       "");
 }

@@ -59,7 +59,7 @@ TEST_F(RenderCommand, WarnsOfATransferFunctionOfAnotherModality) {
             std::string::npos);
 }
 
-TEST_F(RenderCommand, DefaultBackgroundIsAGradient) {
+TEST_F(RenderCommand, BackgroundIsNearlyBlackUnlessNamed) {
   const Arguments nothing = {"--scale", "100", "--denoise", "off"}; // leaves the corners empty
   const auto renderChannels = [&](const Arguments& more) {
     Arguments arguments = nothing;
@@ -67,9 +67,12 @@ TEST_F(RenderCommand, DefaultBackgroundIsAGradient) {
     return render(arguments).channels;
   };
   const auto standard = renderChannels({});
-  EXPECT_NEAR(standard.at("R").front(), 0.060, 0.004); // upper edge
-  EXPECT_NEAR(standard.at("B").back(), 0.016, 0.002);  // lower edge
-  EXPECT_EQ(renderChannels({"--background", "gradient"}), standard);
+  EXPECT_NEAR(standard.at("B").front(), 0.005, 1e-6);
+  EXPECT_EQ(renderChannels({"--background", "dark"}), standard);
+  const auto gradient = renderChannels({"--background", "gradient"});
+  EXPECT_NEAR(gradient.at("R").front(), 0.060, 0.004); // upper edge
+  EXPECT_NEAR(gradient.at("B").back(), 0.016, 0.002);  // lower edge
+  EXPECT_NEAR(renderChannels({"--background", "gray"}).at("G").front(), 0.18, 1e-6);
   EXPECT_EQ(renderChannels({"--background", "0,0,0"}).at("R").front(), 0.0f);
 }
 
@@ -262,9 +265,9 @@ TEST_F(RenderCommand, StopsAtTimeLimitAndAtNoiseTarget) {
 TEST_F(RenderCommand, StatsHaveEveryDocumentedKey) {
   const Outcome outcome =
       run({"knee/knee.nrrd", "--segmentation", "knee/knee.seg.nrrd", "--focus", "FemoralCartilage",
-           "--transfer", "knee/knee.vp.json", "--label-smoothing", "0", "--size", "32x32",
-           "--samples", "4", "--output", (folder / "knee.png").string(), "--stats-json",
-           (folder / "knee.json").string()},
+           "--transfer", "knee/knee.vp.json", "--label-smoothing", "0", "--clip-boundary", "spline",
+           "--size", "32x32", "--samples", "4", "--output", (folder / "knee.png").string(),
+           "--stats-json", (folder / "knee.json").string()},
           kneeFolder().path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json json = readStats("knee.json");

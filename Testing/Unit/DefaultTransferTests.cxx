@@ -28,7 +28,6 @@ TEST(DefaultTransfer, FollowsModalityContrastAgentAndSegments) {
     ScanContent content;
     std::optional<std::string> preset;
   };
-  const std::vector<double> some = {1.0};
   const Case cases[] = {
       {{}, true, false, {}, "ct-skin"},
       {{}, true, true, {}, "ct-skin"},
@@ -42,7 +41,7 @@ TEST(DefaultTransfer, FollowsModalityContrastAgentAndSegments) {
       {Modality::mr, true, false, {.hasSegments = true}, "mr-anatomy"},
       {Modality::mr, false, false, {}, "mr-anatomy"},
       {Modality::us, false, false, {}, "us-fetal"},
-      {{}, false, false, {.hasSegments = true, .brain = some}, "mr-anatomy"},
+      {{}, false, false, {.hasSegments = true, .brain = {1.0}}, "mr-anatomy"},
       {{}, false, true, {.hasSegments = true}, std::nullopt},
       {{}, false, false, {}, std::nullopt},
   };
