@@ -88,7 +88,7 @@ TEST_F(Compatibility, CheckpointIsRefusedAndKept) {
                              "--sampling", "strata", "--checkpoint", "render.film"};
   const Outcome outcome = run(makeArguments(options), folder.path());
   EXPECT_EQ(outcome.status, 2);
-  expectStated(outcome.err, "render.film: version");
+  expectErrorLine(outcome.err, "render.film: version");
   EXPECT_EQ(readBytes(folder / "render.film"), checkpoint);
   EXPECT_FALSE(fs::exists(folder / "new.exr"));
 }
