@@ -60,25 +60,12 @@ Contrast measureInterfaceContrast(const InterfaceScalars& interface,
                       [&](double scalar) { return style.desaturate(transfer.albedo(scalar)); }));
 }
 
-FocusContrast chooseSaturation(const std::optional<double>& requested, const Mask& focus,
-                               const Volume& volume, const TransferFunction& transfer) {
+FocusContrast measureFocusContrast(double saturation, const Mask& focus, const Volume& volume,
+                                   const TransferFunction& transfer) {
   const InterfaceScalars interface = sampleInterface(focus, volume, transfer);
   if (interface.focus.empty() || interface.context.empty())
-    return {requested.value_or(1.0)};
-  const auto at = [&](double saturation) {
-    return FocusContrast{saturation, measureInterfaceContrast(interface, transfer, saturation)};
-  };
-  FocusContrast best = at(requested.value_or(1.0));
-  if (requested)
-    return best;
-  for (const double saturation : {mutedSaturation, graySaturation}) {
-    if (best.contrast->score() > 1.0)
-      break;
-    const FocusContrast muted = at(saturation);
-    if (muted.contrast->score() > best.contrast->score())
-      best = muted;
-  }
-  return best;
+    return {saturation};
+  return {saturation, measureInterfaceContrast(interface, transfer, saturation)};
 }
 
 std::string summary(const FocusContrast& contrast) {

@@ -36,21 +36,19 @@ Contrast measureReflectedContrast(const Rgb& focus, const Rgb& context);
 Contrast measureInterfaceContrast(const InterfaceScalars& interface,
                                   const TransferFunction& transfer, double saturation);
 
-/// Saturation of the context, and the resulting contrast.
+/// Saturation of the context, and its contrast to the focus.
 struct FocusContrast {
   double saturation = 1.0;
   std::optional<Contrast> contrast = {}; ///< empty if one side is transparent
 };
 
-/// Saturations for a context that is too similar to the focus: reduced, and none at all.
-inline constexpr double mutedSaturation = 0.35, graySaturation = 0.0;
+/// Saturation of the context unless one is given: the focus stands out, and the surroundings still
+/// have the colors of tissue.
+inline constexpr double defaultContextSaturation = 0.75;
 
-/// Chooses the saturation of the context. `requested`: the user's value. Without one, the first of
-/// 1, `mutedSaturation` and `graySaturation` whose score exceeds 1 is used, else the one with the
-/// best score (the most saturated among equals). A brain in a head needs gray: with the muted
-/// context, deltaE for red-blind (protan) vision was 8 of the required 12.
-FocusContrast chooseSaturation(const std::optional<double>& requested, const Mask& focus,
-                               const Volume& volume, const TransferFunction& transfer);
+/// Contrast between the focus and a context of that saturation.
+FocusContrast measureFocusContrast(double saturation, const Mask& focus, const Volume& volume,
+                                   const TransferFunction& transfer);
 
 /// "contrast of …": one line on contrast and saturation; empty without a contrast.
 std::string summary(const FocusContrast& contrast);

@@ -323,9 +323,10 @@ FocusContrast chooseContrast(const VolumeHandle& volume, const FocusHandle& focu
                              const std::optional<double>& saturation) {
   if (tint)
     return {saturation.value_or(1.0)};
-  return focus->mask
-             ? chooseSaturation(saturation, *focus->mask, volume->volume, transfer->function)
-             : FocusContrast();
+  if (!focus->mask)
+    return {};
+  return measureFocusContrast(saturation.value_or(defaultContextSaturation), *focus->mask,
+                              volume->volume, transfer->function);
 }
 
 ContextStyle makeContextStyle(const FocusHandle& focus, double extinction, double saturation) {

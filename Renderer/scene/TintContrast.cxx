@@ -248,7 +248,7 @@ ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
     AdjustmentSearch result(colors, start, limits.changeScale, saturation, g);
     if (!context.saturation)
       result.increase(&ColorAdjustment::contextSaturation,
-                      adjustable == Adjustable::both ? limits.saturation : graySaturation);
+                      adjustable == Adjustable::both ? limits.saturation : 0.0);
     if (!context.lightness)
       result.increase(&ColorAdjustment::contextLightness, limits.lightness);
     if (adjustable == Adjustable::both) {

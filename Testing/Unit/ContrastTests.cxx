@@ -103,65 +103,24 @@ TEST(Contrast, SamplesScalarsOnBothSidesOfTheInterface) {
       << "only air";
 }
 
-/// Surroundings as red as the focus lose their saturation, those of another color do not. A
-/// requested saturation is used as it is.
-TEST(Contrast, DesaturatesSurroundingsThatLookLikeTheFocus) {
-  const Rgb red(0.9, 0.4, 0.35), cream(0.99, 0.97, 0.9);
-  const Volume volume = makeBallVolume(15.0);
-  const FocusContrast same = chooseSaturation({}, makeBallMask(), volume, makeTransfer(red, red));
-  EXPECT_EQ(same.saturation, graySaturation);
-  ASSERT_TRUE(same.contrast);
-  // deltaE[0]: normal vision, deltaE[1]: red-blind (ColorVision).
-  EXPECT_GT(same.contrast->deltaE[0], 20.0);
-  EXPECT_LT(same.contrast->deltaE[1], same.contrast->deltaE[0]);
-  const FocusContrast other =
-      chooseSaturation({}, makeBallMask(), volume, makeTransfer(red, cream));
-  EXPECT_EQ(other.saturation, 1.0);
-  EXPECT_TRUE(other.contrast && other.contrast->score() > 1.0);
-  const FocusContrast requested =
-      chooseSaturation(1.0, makeBallMask(), volume, makeTransfer(red, red));
-  EXPECT_EQ(requested.saturation, 1.0);
-  EXPECT_EQ(requested.contrast->deltaE[0], 0.0);
-  EXPECT_EQ(requested.contrast->deltaL, 0.0);
-  const FocusContrast isolated =
-      chooseSaturation({}, makeBallMask(), makeBallVolume(6.0), makeTransfer(red, red));
-  EXPECT_EQ(isolated.saturation, 1.0);
-  EXPECT_FALSE(isolated.contrast);
-}
-
-/// Surroundings similar to the focus stay as saturated as possible: muted if that is enough, else
-/// gray, even if gray is not enough either.
-TEST(Contrast, DesaturatesNoMoreThanNecessary) {
-  const Volume volume = makeBallVolume(15.0);
-  const auto choose = [&volume](const Rgb& context, const Rgb& focus) {
-    const auto decodeAlbedo = [](const Rgb& encoded) { return toAlbedo(decodeSrgb(encoded), 0.0); };
-    return chooseSaturation({}, makeBallMask(), volume,
-                            makeTransfer(decodeAlbedo(context), decodeAlbedo(focus)));
+/// Surroundings as red as the focus differ from it by their saturation alone; they are not measured
+/// where the focus has none.
+TEST(Contrast, OfAFocusAndAContextOfSomeSaturation) {
+  const Rgb red(0.9, 0.4, 0.35);
+  const TransferFunction transfer = makeTransfer(red, red);
+  const auto measure = [&](double saturation, double outerRadius) {
+    return measureFocusContrast(saturation, makeBallMask(), makeBallVolume(outerRadius), transfer);
   };
-  const Rgb yellow(0.9, 0.75, 0.25), orange(0.9, 0.5, 0.3), red(0.78, 0.49, 0.43);
-  const FocusContrast muted = choose(orange, yellow), grayed = choose(yellow, yellow),
-                      insufficient = choose(red, red);
-  EXPECT_EQ(muted.saturation, mutedSaturation);
-  EXPECT_GT(muted.contrast->score(), 1.0);
-  EXPECT_EQ(grayed.saturation, graySaturation);
-  EXPECT_GT(grayed.contrast->score(), 1.0);
-  EXPECT_EQ(insufficient.saturation, graySaturation);
-  EXPECT_LT(insufficient.contrast->score(), 1.0);
-}
-
-/// Purple around gray-blue: muting improves the contrast for normal vision, but makes the two
-/// indistinguishable for color-blind viewers.
-TEST(Contrast, DoesNotReduceContrastForColorBlindViewers) {
-  const auto decodeAlbedo = [](const Rgb& encoded) { return toAlbedo(decodeSrgb(encoded), 0.0); };
-  const TransferFunction transfer =
-      makeTransfer(decodeAlbedo(Rgb(0.82, 0.486, 0.918)), decodeAlbedo(Rgb(0.435, 0.506, 0.545)));
-  const Volume volume = makeBallVolume(15.0);
-  const Contrast muted =
-      *chooseSaturation(mutedSaturation, makeBallMask(), volume, transfer).contrast;
-  const FocusContrast chosen = chooseSaturation({}, makeBallMask(), volume, transfer);
-  EXPECT_EQ(chosen.saturation, 1.0);
-  EXPECT_GT(muted.deltaE[0], chosen.contrast->deltaE[0]);
-  EXPECT_LT(muted.deltaE[1], chosen.contrast->deltaE[1]);
+  const FocusContrast equal = measure(1.0, 15.0), muted = measure(defaultContextSaturation, 15.0),
+                      gray = measure(0.0, 15.0);
+  EXPECT_EQ(equal.contrast->deltaE[0], 0.0);
+  EXPECT_EQ(equal.contrast->deltaL, 0.0);
+  EXPECT_EQ(muted.saturation, 0.75);
+  EXPECT_GT(muted.contrast->deltaE[0], 3.0);
+  EXPECT_GT(gray.contrast->deltaE[0], 20.0);
+  // deltaE[0]: normal vision, deltaE[1]: red-blind (ColorVision).
+  EXPECT_LT(gray.contrast->deltaE[1], gray.contrast->deltaE[0]);
+  EXPECT_FALSE(measure(0.0, 6.0).contrast) << "only air around the focus";
 }
 
 } // namespace
