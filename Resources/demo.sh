@@ -6,7 +6,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 out=$(mkdir -p "${1:-$top/demo}" && cd "${1:-$top/demo}" && pwd) || die "cannot make folder ${1:-$top/demo}"
 
-install_packages "${build_packages[@]}" imagemagick fonts-dejavu-core
+install_packages "${build_packages[@]}" imagemagick
 say "Building (takes some minutes the first time)"
 build release -DFENESTRA_BUILD_TESTS=OFF
 fenestra=$top/build/bin/fenestra

@@ -1,5 +1,6 @@
 #pragma once
-// Files of Resources/ that are compiled into the executable (Resources/CMakeLists.txt lists them).
+// Files of Resources/ and a font that are compiled into the executable (Resources/CMakeLists.txt
+// lists them).
 
 #include <string>
 #include <string_view>
@@ -7,8 +8,8 @@
 
 namespace fenestra {
 
-/// Text of the file at `name`, a path under Resources/ like "color/fenestra.ocio". Empty: no such
-/// file (`name` may come from a user).
+/// Content of the file at `name`, a path under Resources/ like "color/fenestra.ocio". Empty: no
+/// such file (`name` may come from a user).
 std::string_view findResource(std::string_view name);
 
 /// Paths under Resources/ that start with `prefix`, like "transfer/", sorted.

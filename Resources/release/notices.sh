@@ -2,8 +2,8 @@
 # folder), `parts`, `version`, `name`, `epoch` and `origin` (the file of each library except the stubs). Sets `package`
 # (the Debian package of each of these).
 
-# Packages whose headers are compiled in.
-header_packages=(libeigen3-dev nlohmann-json3-dev)
+# Packages whose headers, or font, are compiled in.
+header_packages=(fonts-dejavu-core libeigen3-dev nlohmann-json3-dev)
 
 # find_packages: sets `package`.
 find_packages() {

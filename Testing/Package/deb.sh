@@ -41,7 +41,7 @@ expected='./bin/fenestra
 [ "$files" = "$expected" ] || fail "unexpected files: $(diff <(echo "$expected") <(echo "$files"))"
 # Only the beginnings of these names: they end in a version that depends on Debian's release.
 needs=$(dpkg-deb -f "$package" Depends)
-for library in libc6 libinsighttoolkit libopencolorio libopenexr libtbb libhwy libzip libpng libtiff; do
+for library in libc6 libinsighttoolkit libopencolorio libopenexr libtbb libhwy libzip libpng libtiff libfreetype; do
   [[ $needs == *$library* ]] || fail "missing dependency on $library: $needs"
 done
 [ "$("$usr/bin/fenestra" --version)" = "$version_text" ] || fail "the packaged program differs from the build's"

@@ -1,8 +1,8 @@
 #include "files/images/ContactSheet.h"
 
 #include "TemporaryFolder.h"
-#include "files/images/BitmapFont.h"
 #include "files/images/ImageWriter.h"
+#include "files/images/TextBitmap.h"
 #include "io/Outputs.h"
 
 #include <gtest/gtest.h>
@@ -18,23 +18,55 @@ double sumCoverage(const TextBitmap& line) {
   return std::accumulate(line.coverage.begin(), line.coverage.end(), 0.0);
 }
 
-TEST(BitmapFont, EveryCharacterHasAShape) {
-  EXPECT_EQ(toAscii("Müller 3°"), "Muller 3\x7f");
-  EXPECT_EQ(toAscii("\xff\t"), "\x7f\x7f");
+TEST(TextBitmap, CharactersHaveDifferentShapesAndUnknownOnesAreBoxes) {
   std::set<std::vector<float>> shapes;
-  for (char c = ' '; c < 0x7f; ++c)
-    shapes.insert(rasterizeText(std::string(1, c), 1.0).coverage);
-  EXPECT_EQ(shapes.size(), 95U) << "all shapes differ";
+  for (char c = '!'; c < 0x7f; ++c)
+    shapes.insert(rasterizeText(std::string(1, c), {}).coverage);
+  for (const char* letter : {"\u00fc", "\u0394", "\u0416", "\uffff"}) // the last one is a box
+    shapes.insert(rasterizeText(letter, {}).coverage);
+  EXPECT_EQ(shapes.size(), 98U);
+  const TextBitmap box = rasterizeText("\uffff", {});
+  EXPECT_GT(sumCoverage(box), 10.0);
+  for (const char* text : {"\xff", "\t", "\xe2\x82"}) // no UTF-8, control character, cut
+    EXPECT_EQ(rasterizeText(text, {}).coverage.size() / box.coverage.size(),
+              std::string(text).size() == 2 ? 2U : 1U)
+        << text;
+  EXPECT_EQ(rasterizeText("", {}).coverage.size(), 0U);
 }
 
-TEST(BitmapFont, CoverageGrowsWithTheSquareOfTheSize) {
-  const std::string text = "Liver, 12";
-  const double one = sumCoverage(rasterizeText(text, 1.0));
-  EXPECT_EQ(rasterizeText(text, 1.0).width, glyphWidth * 9);
-  EXPECT_EQ(rasterizeText(text, 1.0).height, lineHeight);
-  for (const double size : {1.5, 2.0, 3.0})
-    EXPECT_NEAR(sumCoverage(rasterizeText(text, size)), size * size * one, 0.05 * size * size * one)
+TEST(TextBitmap, CoverageGrowsWithTheSquareOfTheSize) {
+  const std::string text = "Liver, 12 \u00b5m";
+  const TextBitmap large = rasterizeText(text, {.size = 100.0});
+  EXPECT_NEAR(-large.top, 100.0 * fontAscent, 20.0);
+  for (const double size : {9.5, 14.0, 28.0, 300.0}) {
+    const TextBitmap line = rasterizeText(text, {.size = size});
+    const double scale = size / 100.0;
+    EXPECT_NEAR(line.advance, large.advance * scale, 1e-2 * line.advance) << size;
+    EXPECT_NEAR(sumCoverage(line), scale * scale * sumCoverage(large), 0.03 * sumCoverage(line))
         << size;
+  }
+  EXPECT_NEAR(-rasterizeText("H", {.size = 1000.0}).top, 1000.0 * fontCapHeight, 2.0);
+}
+
+TEST(TextBitmap, OutlineSurroundsTheGlyphs) {
+  const TextBitmap plain = rasterizeText("I", {.size = 100.0});
+  const TextBitmap thick = rasterizeText("I", {.size = 100.0, .outline = 10.0});
+  EXPECT_NEAR(thick.left + thick.width, plain.left + plain.width + 10, 1);
+  EXPECT_NEAR(thick.top, plain.top - 10, 1);
+  EXPECT_EQ(thick.advance, plain.advance);
+  // Area of a shape and its border: area + perimeter * r + pi * r^2.
+  const double width = 9.863, height = 72.9; // of this letter
+  EXPECT_NEAR(sumCoverage(plain), width * height, 1.0);
+  EXPECT_NEAR(sumCoverage(thick), width * height + 20.0 * (width + height) + 314.2, 5.0);
+}
+
+TEST(TextBitmap, LongTextEndsInAnEllipsis) {
+  const double width = rasterizeText("A long name", {}).advance;
+  EXPECT_EQ(rasterizeText("A long name", {.maxWidth = width}).advance, width);
+  const TextBitmap cut = rasterizeText("A long name", {.maxWidth = width - 0.5});
+  EXPECT_EQ(cut.coverage, rasterizeText("A long na\u2026", {}).coverage);
+  EXPECT_EQ(rasterizeText("A long name", {.maxWidth = 1.0}).coverage,
+            rasterizeText("\u2026", {}).coverage);
 }
 
 std::filesystem::path writeFile(const std::filesystem::path& path, const Image& image) {

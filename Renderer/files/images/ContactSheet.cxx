@@ -3,8 +3,8 @@
 #include "base/Color.h"
 #include "base/Error.h"
 #include "base/Text.h"
-#include "files/images/BitmapFont.h"
 #include "files/images/ImageReader.h"
+#include "files/images/TextBitmap.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr int boxWidth = 336, maxBoxHeight = 504, minBoxHeight = 168; ///< pixels
 constexpr int gap = 20;
-constexpr double titleDotSize = 3.0, nameDotSize = 2.0, textDotSize = 1.5; ///< pixels per font dot
+constexpr int titleSize = 28, nameSize = 19, textSize = 14; ///< em, pixels
 
 constexpr std::uint32_t sheetColor = 0x17191b, panelColor = 0x222527, white = 0xf0f0f0,
                         gray = 0xa2a8ad, errorColor = 0xff9d7a;
@@ -37,18 +37,15 @@ public:
       for (int x = 0; x < width; ++x)
         blend(left + x, top + y, toLinear(color), 1.0F);
   }
-  /// Draws left-aligned text; text wider than `width` pixels ends in an ellipsis.
-  void drawText(int left, int top, const std::string& text, double dotSize, std::uint32_t color,
+  /// Draws a line of left-aligned text; text wider than `width` pixels ends in an ellipsis.
+  void drawText(int left, int top, const std::string& text, int size, std::uint32_t color,
                 int width) {
-    const auto maxLength = static_cast<std::size_t>(std::max(4.0, width / (glyphWidth * dotSize)));
-    std::string visible = toAscii(text);
-    if (visible.size() > maxLength)
-      visible = visible.substr(0, maxLength - 3) + "...";
-    const TextBitmap line = rasterizeText(visible, dotSize);
+    const TextBitmap line = rasterizeText(text, {.size = 1.0 * size, .maxWidth = 1.0 * width});
+    const int baseline = top + static_cast<int>(fontAscent * size);
     auto coverage = line.coverage.begin();
     for (int y = 0; y < line.height; ++y)
       for (int x = 0; x < line.width; ++x)
-        blend(left + x, top + y, toLinear(color), *coverage++);
+        blend(left + line.left + x, baseline + line.top + y, toLinear(color), *coverage++);
   }
   void drawImage(int left, int top, const Canvas& source) {
     for (int y = 0; y < source.m_height; ++y)
@@ -123,6 +120,13 @@ Canvas scaleToBox(const Image& image) {
   return canvas;
 }
 
+/// Distance of the baselines of two lines, pixels.
+constexpr int computeLineHeight(int size) {
+  return static_cast<int>(fontLineHeight * size);
+}
+
+constexpr int textLine = computeLineHeight(textSize) + 2; ///< pixels
+
 /// Entry with its image scaled to display size.
 struct Thumbnail {
   const SheetEntry* entry;
@@ -152,28 +156,27 @@ int chooseColumns(int count) {
 
 /// Draws an entry into its cell.
 void drawEntry(Canvas& sheet, int left, int top, int boxHeight, const Thumbnail& thumbnail) {
-  constexpr int margin = 14, nameLine = static_cast<int>(lineHeight * nameDotSize),
-                textLine = static_cast<int>(lineHeight * textDotSize) + 2;
+  constexpr int margin = 14;
   sheet.fill(left, top, boxWidth, boxHeight, panelColor);
   if (const auto& image = thumbnail.image)
     sheet.drawImage(left + (boxWidth - image->width()) / 2, top + (boxHeight - image->height()) / 2,
                     *image);
   int line = top + margin;
-  const auto lineLength =
-      static_cast<std::size_t>((boxWidth - 2 * margin) / (glyphWidth * textDotSize));
+  constexpr double characterWidth = 0.6 * textSize; // of most texts less
+  constexpr auto lineLength = static_cast<std::size_t>((boxWidth - 2 * margin) / characterWidth);
   if (!thumbnail.problem.empty())
     for (const std::string& text : split(wrapLines(thumbnail.problem, lineLength), '\n')) {
       if (line + textLine > top + boxHeight)
         break;
-      sheet.drawText(left + margin, line, text, textDotSize, errorColor, boxWidth - 2 * margin);
+      sheet.drawText(left + margin, line, text, textSize, errorColor, boxWidth - 2 * margin);
       line += textLine;
     }
   line = top + boxHeight + 8;
-  sheet.drawText(left, line, thumbnail.entry->name, nameDotSize,
+  sheet.drawText(left, line, thumbnail.entry->name, nameSize,
                  thumbnail.problem.empty() ? white : errorColor, boxWidth);
-  line += nameLine;
+  line += computeLineHeight(nameSize);
   for (const std::string& text : thumbnail.entry->lines) {
-    sheet.drawText(left, line, text, textDotSize, gray, boxWidth);
+    sheet.drawText(left, line, text, textSize, gray, boxWidth);
     line += textLine;
   }
 }
@@ -194,17 +197,14 @@ Image makeContactSheet(const std::string& title, const std::string& subtitle,
   const int count = static_cast<int>(entries.size());
   const int columns = std::min(maxColumns, chooseColumns(count));
   const int rows = (count + columns - 1) / columns;
-  const int captionHeight =
-      8 + static_cast<int>(lineHeight * nameDotSize) +
-      static_cast<int>(lines) * (static_cast<int>(lineHeight * textDotSize) + 2);
-  const int headerHeight = static_cast<int>(lineHeight * (titleDotSize + textDotSize)) + 2 * gap;
+  const int captionHeight = 8 + computeLineHeight(nameSize) + static_cast<int>(lines) * textLine;
+  const int headerHeight = computeLineHeight(titleSize) + computeLineHeight(textSize) + 2 * gap;
   const int cellWidth = boxWidth + gap, cellHeight = boxHeight + captionHeight + gap;
   Canvas sheet(gap + std::max(columns, 2) * cellWidth, headerHeight + rows * cellHeight + gap / 2,
                sheetColor);
   const int width = sheet.width() - 2 * gap;
-  sheet.drawText(gap, gap, title, titleDotSize, white, width);
-  sheet.drawText(gap, gap + static_cast<int>(lineHeight * titleDotSize), subtitle, textDotSize,
-                 gray, width);
+  sheet.drawText(gap, gap, title, titleSize, white, width);
+  sheet.drawText(gap, gap + computeLineHeight(titleSize), subtitle, textSize, gray, width);
   for (int i = 0; i < count; ++i)
     drawEntry(sheet, gap + i % columns * cellWidth, headerHeight + i / columns * cellHeight,
               boxHeight, thumbnails[static_cast<std::size_t>(i)]);

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <OpenColorIO/OpenColorIO.h>
 #include <OpenEXRConfig.h>
+#include <ft2build.h>
 #include <gdcmVersion.h>
 #include <gnu/libc-version.h>
 #include <hdf5.h>
@@ -18,6 +19,8 @@
 #include <tiffio.h>
 #include <zip.h>
 #include <zlib.h>
+
+#include FT_FREETYPE_H
 
 #include <array>
 
@@ -45,6 +48,7 @@ std::string tiffVersion() {
 std::vector<std::pair<std::string, std::string>> libraryVersions() {
   return {
       {"Eigen", joinVersion({EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION})},
+      {"FreeType", joinVersion({FREETYPE_MAJOR, FREETYPE_MINOR, FREETYPE_PATCH})},
       {"GDCM", gdcm::Version::GetVersion()},
       {"glibc", gnu_get_libc_version()},
       {"HDF5", hdf5Version()},
