@@ -67,9 +67,9 @@ std::string findMissingFile(const json& some, const json& others) {
 } // namespace
 
 bool isSampleOption(const Option& option) {
-  const bool affectsDisplay =
-      option.name == "exposure" || option.name == "tone" || option.name == "denoise";
-  return isImageOption(option) && option.overrideGroup != OverrideGroup::stop && !affectsDisplay;
+  constexpr std::string_view ofDisplay[] = {"exposure", "tone", "annotate", "denoise"};
+  return isImageOption(option) && option.overrideGroup != OverrideGroup::stop &&
+         std::ranges::find(ofDisplay, option.name) == std::end(ofDisplay);
 }
 
 ordered_json makeProvenance(const OptionValues& given, const OptionValues& options,

@@ -285,6 +285,7 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   const Stopwatch total;
   const PreparedScene scene(options.scene, job.input);
   outputs.checkInputs(); // now including files that the scene refers to
+  requireScale(options, scene.camera().pose().projection);
   warn(composeMessages(scene.warnings()));
   if (options.verbose)
     printFacts(scene);

@@ -223,6 +223,13 @@ struct RenderOptionTable {
        "(preserves dark and middle values, for measuring)",
        ValueSpec::choice(options.display.view, {{"film", DisplayView::film},
                                                 {"photographic", DisplayView::photographic}})},
+      {"annotate", "MARK,...", appearanceGroup,
+       "Marks on .png and .tif: scale (a bar with its length in mm, for an orthographic "
+       "projection), orientation (R/L, A/P, S/I at the edges: the sides of the patient), or none",
+       ValueSpec::list()
+           .bind(options.display.annotations, readAnnotations)
+           .withDefault("none")
+           .withNamedValues({"scale", "orientation", "none"})},
       {"size", "WxH", qualityGroup, "Width and height of the image in pixels",
        ValueSpec::text()
            .bind(scene, readSize)

@@ -73,6 +73,19 @@ void readBackground(const OptionValues& values, const std::string& name,
         parseLinearColor(values, name, "dark, gradient, gray, transparent or environment")};
 }
 
+void readAnnotations(const OptionValues& values, const std::string& name,
+                     Annotations& annotations) {
+  const std::vector<std::string> marks = values.list(name);
+  if (marks == std::vector<std::string>{"none"})
+    return;
+  for (const std::string& mark : marks) {
+    if (mark != "scale" && mark != "orientation")
+      throw usageError("--", name, ": expected scale, orientation or both, or none, got '",
+                       toOneLine(*values.text(name)), "'");
+    (mark == "scale" ? annotations.scale : annotations.orientation) = true;
+  }
+}
+
 void readSize(const OptionValues& values, const std::string& name, RenderRequest& scene) {
   constexpr int largest = 16384;
   const std::string text = *values.text(name);

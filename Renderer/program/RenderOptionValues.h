@@ -17,6 +17,7 @@ void readPlane(const OptionValues& values, const std::string& name,
 void readEnvironment(const OptionValues& values, const std::string& name, RenderRequest& scene);
 void readBackground(const OptionValues& values, const std::string& name,
                     std::optional<Background>& background);
+void readAnnotations(const OptionValues& values, const std::string& name, Annotations& annotations);
 void readSize(const OptionValues& values, const std::string& name, RenderRequest& scene);
 void readShard(const OptionValues& values, const std::string& name, RenderOptions& options);
 void readTexts(const OptionValues& values, const std::string& name,

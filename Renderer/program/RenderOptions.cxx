@@ -194,6 +194,7 @@ RenderOptions makeRenderOptions(const OptionValues& given) {
   scene.input = *values.text("INPUT");
   checkInput(values, scene);
   checkView(scene.view, scene);
+  requireScale(options, scene.view.projection.value_or(Projection::orthographic));
   checkClip(values, scene);
 
   if (!values.has("samples") && (values.has("seconds") || values.has("noise")))
@@ -209,6 +210,13 @@ RenderOptions makeRenderOptions(const OptionValues& given) {
   resolveDenoising(values, options);
   scene.measure = options.stats.has_value();
   return resolveProgress(std::move(options));
+}
+
+void requireScale(const RenderOptions& options, Projection projection) {
+  if (options.display.annotations.scale && projection == Projection::perspective)
+    throw usageError("--annotate: scale requires an orthographic projection, since lengths in a "
+                     "perspective image depend on the depth; add --projection orthographic, or use "
+                     "--annotate orientation");
 }
 
 RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene) {

@@ -82,6 +82,9 @@ RenderOptions resolveProgress(RenderOptions options);
 /// contradictory options.
 RenderOptions makeRenderOptions(const OptionValues& values);
 
+/// Throws Error (usage) if a scale bar is requested, but the projection has no uniform scale.
+void requireScale(const RenderOptions& options, Projection projection);
+
 /// options.settings with a background: the option's, else `scene` (from a Slicer scene; nullopt for
 /// other inputs), else Background::standard.
 RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene);

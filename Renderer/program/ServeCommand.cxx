@@ -28,6 +28,7 @@ public:
   [[noreturn]] void run() {
     m_scene.emplace(m_options.scene, m_source);
     m_outputs.checkInputs();
+    requireScale(m_options, m_scene->camera().pose().projection);
     for (;;) {
       renderPictures();
       do {
@@ -51,6 +52,7 @@ private:
       checkMemory(options.scene);
       PreparedScene scene = m_scene->withRequest(options.scene);
       m_outputs.checkInputs();
+      requireScale(options, scene.camera().pose().projection);
       m_scene = std::move(scene);
       m_options = options;
       m_values = values;

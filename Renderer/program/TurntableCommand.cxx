@@ -43,6 +43,7 @@ public:
   int run() {
     const DeferredStop stopInstead(m_monitor.stop); // the current frame is discarded
     m_outputs.checkInputs();                        // now including files that the scene refers to
+    requireScale(m_options.render, m_start.projection);
     m_manifest.setInputs(m_view.scene);
     m_manifest.write(m_outputs);
     if (m_options.render.verbose)

@@ -50,10 +50,11 @@ protected:
 };
 
 TEST_F(MergeCommand, ShardsInAnyOrderGiveTheImageOfASingleRun) {
-  const Outcome once = run({"volume.nrrd", "--size", "64x64", "--samples", "9", "--segmentation",
-                            "segments.seg.nrrd", "--focus", "A", "--denoise", "on", "--output",
-                            "once.exr", "--output", "once.png", "--surface", "once.ply"},
-                           folder.path());
+  const Outcome once =
+      run({"volume.nrrd", "--size", "64x64", "--samples", "9", "--segmentation",
+           "segments.seg.nrrd", "--focus", "A", "--denoise", "on", "--output", "once.exr",
+           "--output", "once.png", "--surface", "once.ply", "--annotate", "orientation"},
+          folder.path());
   ASSERT_EQ(once.status, 0) << once.err;
   std::mt19937 random(5);
   std::vector<int> counts = {1, 3, 7};
@@ -63,9 +64,9 @@ TEST_F(MergeCommand, ShardsInAnyOrderGiveTheImageOfASingleRun) {
     SCOPED_TRACE(count);
     Arguments shards = renderShards(count);
     std::ranges::shuffle(shards, random);
-    const Outcome merged =
-        merge(shards, {"--denoise", "on", "--output", "merged.exr", "--output", "merged.png",
-                       "--surface", "merged.ply", "--stats-json", "merged.json"});
+    const Outcome merged = merge(shards, {"--denoise", "on", "--output", "merged.exr", "--output",
+                                          "merged.png", "--surface", "merged.ply", "--stats-json",
+                                          "merged.json", "--annotate", "orientation"});
     ASSERT_EQ(merged.status, 0) << merged.err;
     expectSameImage(folder / "once.exr", folder / "merged.exr");
     expectSameImage(folder / "once.png", folder / "merged.png");

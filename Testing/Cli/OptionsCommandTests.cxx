@@ -95,6 +95,7 @@ TEST_F(OptionsCommand, RejectsNumbersOutOfRange) {
   refuseAll("--environment", {"1,2", "-1,0,0", "1,2,nan", "1e300,0,0", "sky.hdr"});
   refuseAll("--background", {"1,2", "0,0,-1", "1,2,nan", "blue"});
   refuseAll("--exposure", {"17", "-16.5", "nan", "1,2", "bright"});
+  refuseAll("--annotate", {"ruler", "scale,ruler", "none,scale", "scale,", ""});
   refuseAll("--size", {"0x0", "32", "-1x3", "1x1x1", "1e3x2", "32X32", "16385x1", "1x16385",
                        "99999999999x1", "x", "nanxnan", ""});
   expectErrors(refusals, folder.path());
@@ -150,6 +151,9 @@ TEST_F(OptionsCommand, RejectsContradictions) {
           makeError({"--clip", "cutaway"}, "--clip: cutaway requires a focus; add --focus"),
           makeError({"--projection", "perspective", "--scale", "10"}, "--scale: only for"),
           makeError({"--angle", "20"}, "--angle: only for --projection perspective"),
+          makeError({"--annotate", "orientation,scale", "--projection", "perspective", "--transfer",
+                     "missing"}, // detected before inputs are read
+                    "--annotate: scale requires an orthographic projection"),
           makeError({"--focus", "A"}, "--focus: requires --segmentation FILE"),
           makeError({"--segmentation", "segments.seg.nrrd"},
                     "--segmentation: used only with --focus, --materials or --preset"),

@@ -113,6 +113,34 @@ TEST_F(RenderCommand, ExposureAndToneChangeOnlyDisplayImages) {
   EXPECT_EQ(readStats("c.json")["display"]["exposure"], -1.5);
 }
 
+TEST_F(RenderCommand, AnnotationsAreOnlyOnDisplayImages) {
+  const auto renderAll = [&](const std::string& name, const Arguments& more) {
+    Arguments arguments = {"--output", name + ".exr", "--output", name + ".nrrd",
+                           "--output", name + ".png", "--output", name + ".tif"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(renderVolume(arguments).status, 0);
+  };
+  const auto channels = [&](const std::string& name) { return readImage(folder / name).channels; };
+  renderAll("a", {});
+  renderAll("none", {"--annotate", "none"});
+  renderAll("scale", {"--annotate", "scale"});
+  renderAll("both", {"--annotate", "scale,orientation"});
+  for (const std::string name : {"scale", "both"}) {
+    EXPECT_EQ(channels(name + ".exr"), channels("a.exr"));
+    for (const std::string part : {".nrrd", "-Z.nrrd"})
+      EXPECT_EQ(readBytes(folder / (name + part)), readBytes(folder / ("a" + part)));
+  }
+  for (const std::string kind : {".png", ".tif"}) {
+    EXPECT_EQ(channels("none" + kind), channels("a" + kind));
+    EXPECT_NE(channels("scale" + kind), channels("a" + kind));
+    EXPECT_NE(channels("both" + kind), channels("scale" + kind));
+  }
+  const Arguments perspective = {"--projection", "perspective", "--output", "p.png"};
+  Arguments annotated = perspective;
+  annotated.insert(annotated.end(), {"--annotate", "orientation"});
+  EXPECT_EQ(renderVolume(annotated).status, 0) << "letters need no scale";
+}
+
 TEST_F(RenderCommand, EveryFormatEqualsItselfInCompare) {
   const Arguments names = {"a.png", "a.tif", "A.EXR", "a.nrrd"};
   Arguments arguments;

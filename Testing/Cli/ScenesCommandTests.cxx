@@ -323,6 +323,16 @@ TEST_F(ScenesCommand, RejectsDamagedScenesAndMissingNodes) {
           {"volume of a file", with("volume.nrrd", {"--volume", "x"}), 2, "--volume:"},
           {"angle", with("s.mrml", {"--angle", "9"}), 2, "angle:"},
           {"scale", with("perspective.mrml", {"--scale", "9"}), 2, "scale:"},
+          {"scale bar", with("perspective.mrml", {"--annotate", "scale"}), 2, "--annotate:"},
+          {"server with a scale bar",
+           {"serve", "perspective.mrml", "--annotate", "scale", "--output", "f.png"},
+           2,
+           "--annotate:"},
+          {"turntable with a scale bar",
+           {"turntable", "perspective.mrml", "--annotate", "scale", "--frames", "2", "--size",
+            "8x8", "--output", "f.png"},
+           2,
+           "--annotate:"},
       },
       folder.path());
 }

@@ -135,6 +135,7 @@ TEST_F(ServeCommand, InvalidLineGivesAnErrorAndChangesNothing) {
       {R"({"id": 6, "segmentation": "missing.nrrd", "focus": "A"})", "6", "missing.nrrd"},
       {R"({"id": 7, "segmentation": "segments.seg.nrrd", "focus": "C"})", "7", "C"},
       {R"({"id": 8, "size": "0x0"})", "8", "--size"},
+      {R"({"id": 8, "annotate": "scale", "projection": "perspective"})", "8", "--annotate: scale"},
       {"{\"id\": 9, \"lights\": \"" + std::string(1 << 20, 'x') + "\"}", "null",
        "more than a million"},
       {R"({"id": 10, "samples": 1e999})", "null", "too large"},

@@ -2,6 +2,8 @@
 // Maps radiance to display values, through OpenColorIO and Resources/color/fenestra.ocio. Exposure
 // and tone apply only when a .png or .tif is encoded, so raw channels, noise estimates and metrics
 // do not depend on them.
+#include "files/images/Annotations.h"
+
 #include <string_view>
 #include <vector>
 
@@ -15,11 +17,12 @@ enum class DisplayView { film, photographic, standard };
 /// Value of --tone that selects the view.
 std::string_view toString(DisplayView view);
 
-/// Settings of the display transform.
+/// How display images show an image: settings of the display transform, and marks.
 struct Display {
   DisplayView view = DisplayView::film;
   double exposure =
       0.0; ///< EV (stops): radiance is multiplied by 2^exposure, except for `standard`
+  Annotations annotations = {};
 };
 
 /// Converts interleaved RGBA, linear Rec. 709 with premultiplied alpha, to sRGB-encoded values in

@@ -274,7 +274,8 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
                     encodeSlice(image, plane, interleaveRgba(image, "denoised.")));
     return;
   }
-  const std::vector<float> pixels = toDisplay(interleaveRgba(image), display);
+  std::vector<float> pixels = toDisplay(interleaveRgba(image), display);
+  drawAnnotations(display.annotations, plane, image.width, image.height, pixels);
   const std::string comment = makeComment(image, display);
   outputs.write(path, format == ImageFormat::png ? encodePng(image, pixels, comment)
                                                  : encodeTiff(image, pixels, comment));
