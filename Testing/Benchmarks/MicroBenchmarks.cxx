@@ -122,6 +122,8 @@ void addTracking(Probe& p) {
       [&p](std::size_t i) { return p.medium.extinction(p.inside[i]); });
   add("gradient/collisions", Probe::count,
       [&p](std::size_t i) { return p.field.gradient(p.inside[i]); });
+  add("sobel gradient/collisions", Probe::count,
+      [&p](std::size_t i) { return p.field.sobelGradient(p.inside[i]); });
   add("clip test/collisions", Probe::count,
       [&p](std::size_t i) { return clipWeight(p.view.clip, p.collisions[i]); });
 }

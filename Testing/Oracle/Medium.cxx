@@ -1,5 +1,7 @@
 #include "Medium.h"
 
+#include <array>
+
 namespace fenestra::oracle {
 namespace {
 
@@ -24,6 +26,29 @@ double findMaxKnot(const ScalarFunction& f) {
   for (const auto& knot : f.knots())
     greatest = std::max(greatest, knot.value[0]);
   return greatest;
+}
+
+struct Corner {
+  Size3 voxel = {};
+  double weight = 1.0;
+};
+
+/// Trilinear weights of the eight voxels around a point; points outside the outermost voxel centers
+/// are clamped to them.
+std::array<Corner, 8> findCorners(const Size3& size, const Vec3& index) {
+  std::array<Corner, 8> corners;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    Corner& found = corners[corner];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double x = std::min(std::max(index[axis], 0.0), static_cast<double>(size[axis] - 1));
+      const double fraction = x - std::floor(x);
+      const bool upper = corner >> axis & 1;
+      found.weight *= upper ? fraction : 1.0 - fraction;
+      found.voxel[axis] =
+          std::min(static_cast<std::int64_t>(std::floor(x)) + upper, size[axis] - 1);
+    }
+  }
+  return corners;
 }
 
 std::vector<float> toFloats(const Voxels& voxels) {
@@ -59,27 +84,19 @@ bool Medium::contains(const Vec3& world) const {
   return !m_worldToCrop || (*m_worldToCrop * world).cwiseAbs().maxCoeff() <= 1.0;
 }
 
-/// Trilinear sum of eight voxels; points outside the outermost voxel centers are clamped to them.
+/// Voxels outside the volume repeat those of its border.
+double Medium::scalarAtVoxel(const Size3& voxel) const {
+  Size3 inside;
+  for (int axis = 0; axis < 3; ++axis)
+    inside[axis] = std::min(std::max<std::int64_t>(voxel[axis], 0), m_size[axis] - 1);
+  const std::int64_t at = inside[0] + m_size[0] * (inside[1] + m_size[1] * inside[2]);
+  return static_cast<double>(m_voxels[static_cast<std::size_t>(at)]);
+}
+
 double Medium::scalarAtIndex(const Vec3& index) const {
-  Size3 base;
-  Vec3 fraction;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double x = std::min(std::max(index[axis], 0.0), static_cast<double>(m_size[axis] - 1));
-    base[axis] = static_cast<std::int64_t>(std::floor(x));
-    fraction[axis] = x - std::floor(x);
-  }
   double sum = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    double weight = 1.0;
-    Size3 voxel = base;
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool upper = corner >> axis & 1;
-      weight *= upper ? fraction[axis] : 1.0 - fraction[axis];
-      voxel[axis] = std::min(base[axis] + upper, m_size[axis] - 1);
-    }
-    const std::int64_t at = voxel[0] + m_size[0] * (voxel[1] + m_size[1] * voxel[2]);
-    sum += weight * static_cast<double>(m_voxels[static_cast<std::size_t>(at)]);
-  }
+  for (const auto& [voxel, weight] : findCorners(m_size, index))
+    sum += weight * scalarAtVoxel(voxel);
   return sum;
 }
 
@@ -88,22 +105,47 @@ double Medium::extinction(const TransferFunction& transfer, const Vec3& world,
   const double sigma_t = interpolate(transfer.extinction, scalar)[0];
   if (!transfer.gradientOpacity || sigma_t == 0.0)
     return sigma_t;
-  return sigma_t * interpolate(*transfer.gradientOpacity, gradient(world).norm())[0];
+  const Vec3 perMm = m_worldToIndex.linear().transpose() * // chain rule
+                     centralDifference(m_worldToIndex * world);
+  return sigma_t * interpolate(*transfer.gradientOpacity, perMm.norm())[0];
 }
 
-Vec3 Medium::gradient(const Vec3& world) const {
-  const Vec3 index = m_worldToIndex * world;
+Vec3 Medium::centralDifference(const Vec3& index) const {
   Vec3 perVoxel;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 step = Vec3::Unit(axis);
     perVoxel[axis] = (scalarAtIndex(index + step) - scalarAtIndex(index - step)) / 2.0;
   }
-  return m_worldToIndex.linear().transpose() * perVoxel; // chain rule
+  return perVoxel;
+}
+
+Vec3 Medium::sobelAtVoxel(const Size3& voxel) const {
+  Vec3 perVoxel = Vec3::Zero();
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z) {
+        // 1 2 1 across the derivative, -1 0 1 along it; the differences span two voxels.
+        const double wx = 2 - x * x, wy = 2 - y * y, wz = 2 - z * z;
+        perVoxel += scalarAtVoxel({voxel[0] + x, voxel[1] + y, voxel[2] + z}) / 32.0 *
+                    Vec3(x * wy * wz, wx * y * wz, wx * wy * z);
+      }
+  return perVoxel;
+}
+
+Vec3 Medium::sobelDifference(const Vec3& index) const {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& [voxel, weight] : findCorners(m_size, index))
+    sum += weight * sobelAtVoxel(voxel);
+  return sum;
 }
 
 Vec3 Medium::spansPerMm(const Vec3& world) const {
   const auto& knots = m_transfer.extinction.knots();
-  return gradient(world) / (knots.back().position - knots.front().position);
+  const Vec3 index = m_worldToIndex * world;
+  const Vec3 perVoxel = m_transfer.gradient == GradientKind::sobel ? sobelDifference(index)
+                                                                   : centralDifference(index);
+  return m_worldToIndex.linear().transpose() * perVoxel /
+         (knots.back().position - knots.front().position);
 }
 
 double Medium::surfaceProbability(const TransferFunction& transfer, const Vec3& world,

@@ -21,11 +21,10 @@ public:
   /// True if a world point lies in the volume's box and in the crop.
   bool contains(const Vec3& world) const;
   double scalar(const Vec3& world) const { return scalarAtIndex(m_worldToIndex * world); }
-  /// Gradient of the scalar, per mm, world axes.
-  Vec3 gradient(const Vec3& world) const;
   /// Transfer function of the volume. The functions below accept that of a component instead.
   const TransferFunction& transfer() const { return m_transfer; }
-  /// Gradient in spans (scalar ranges of the transfer function) per mm. Requires two knots.
+  /// Gradient for surfaces, by the kind of the volume's transfer function, in spans (scalar ranges
+  /// of that function) per mm. Requires two knots.
   Vec3 spansPerMm(const Vec3& world) const;
   /// Extinction, mm^-1, by a transfer function; valid inside the volume only.
   double extinction(const TransferFunction& transfer, const Vec3& world, double scalar) const;
@@ -39,6 +38,11 @@ public:
 
 private:
   double scalarAtIndex(const Vec3& index) const;
+  double scalarAtVoxel(const Size3& voxel) const;
+  /// Differences per voxel along the index axes; Sobel's at a voxel, and interpolated.
+  Vec3 centralDifference(const Vec3& index) const;
+  Vec3 sobelAtVoxel(const Size3& voxel) const;
+  Vec3 sobelDifference(const Vec3& index) const;
 
   Size3 m_size;
   Affine m_worldToIndex;

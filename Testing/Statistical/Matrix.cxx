@@ -68,6 +68,7 @@ Combination makeCombination(int index) {
     if (isVariantClip && c.clip == ClipFactor::cutaway)
       c.clip = ClipFactor::hole;
   }
+  c.gradient = static_cast<GradientKind>(next(2)); // last: earlier factors retain their levels
   if (isVariantLight && c.light == LightFactor::constant)
     c.light = LightFactor::sky;
   if (isVariantLight && c.light == LightFactor::disk)
@@ -242,6 +243,7 @@ TransferFunction makeTransfer(const Combination& c) {
     transfer.gradientOpacity = makeGradientCurve({{0.0, 0.2}, {0.3, 1.0}});
   if (c.transfer == TransferFactor::steepGradientOpacity)
     transfer.gradientOpacity = makeGradientCurve({{0.0, 0.0}, {0.1, 0.0}, {0.1, 1.0}, {0.3, 0.4}});
+  transfer.gradient = c.gradient;
   if (c.isHybrid)
     transfer.shading = c.isCoated ? SurfaceShading::makeCoated(0.6, 0.35, c.g)
                                   : SurfaceShading{0.8, 0.3, 12.0, 0.6};
@@ -394,7 +396,8 @@ std::string describe(const Combination& c) {
   text << name(styles, c.style) << (c.isCropped ? ", cropped" : "") << " | "
        << name(lights, c.light) << " | " << c.g << " | " << name(albedos, c.albedo) << " | "
        << name(transfers, c.transfer) << (c.isHybrid ? c.isCoated ? ", coated" : ", hybrid" : "")
-       << " | " << name(voxels, c.voxels) << " | " << name(grids, c.grid) << " | "
+       << (c.isHybrid && c.gradient == GradientKind::sobel ? ", Sobel" : "") << " | "
+       << name(voxels, c.voxels) << " | " << name(grids, c.grid) << " | "
        << name(backgrounds, c.background) << " | ";
   if (c.bounces == std::numeric_limits<std::uint64_t>::max())
     text << "any";

@@ -51,6 +51,7 @@ struct Combination {
   TransferFactor transfer{};
   bool isHybrid = false;
   bool isCoated = false; ///< where hybrid
+  GradientKind gradient{};
   VoxelFactor voxels{};
   GridFactor grid{};
   bool isCropped = false;

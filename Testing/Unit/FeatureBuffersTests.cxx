@@ -129,8 +129,9 @@ TEST(FeatureBuffers, SimdAgreesWithScalarMarching) {
   std::vector<Clip> clips = {ClipNone(), makeTiltedClip(s)};
   clips.push_back(
       ClipPlane{Camera(s.pose, s.width, s.height), Vec3(0, 2, 0), -Vec3::UnitY(), {0.0, 3.0}});
-  for (const Clip& clip : clips) {
-    s.clip = clip;
+  for (std::size_t i = 0; i < 2 * clips.size(); ++i) {
+    s.clip = clips[i / 2];
+    s.transfer.gradient = i % 2 == 0 ? GradientKind::central : GradientKind::sobel;
     s.visitView([](const SceneView& scene) {
       ASSERT_TRUE(canUseSimd(scene));
       const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);

@@ -121,7 +121,7 @@ public:
     if (m_medium.context)
       albedo = desaturate(*m_medium.context, p, albedo);
     m_albedo = m_albedo + probability * albedo;
-    const Float3 difference = centralDifference<Voxel>(m_medium.field, p);
+    const Float3 difference = scalarDifference<Voxel>(m_shading, m_medium.field, p);
     Float3 gradient = mapDirection(m_shading.indexDifferenceToGradient, difference);
     Float alongRay = dot(walk.direction(), difference); // has the sign of the slope along the ray
     if (m_shading.hybrid && m_medium.cutSlope > 0.0F) {

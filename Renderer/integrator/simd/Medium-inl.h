@@ -39,6 +39,37 @@ HWY_INLINE Pairs loadVoxels(const SimdField& field, Int first, const Indices& in
   }
 }
 
+/// Four values per lane, of voxels, rows or slices.
+struct LaneQuad {
+  Float values[4];
+
+  HWY_INLINE Float& operator[](std::int32_t i) { return values[i]; }
+  HWY_INLINE Float operator[](std::int32_t i) const { return values[i]; }
+};
+
+/// Each lane's four voxels from its index + `offset` on, along x. All must exist.
+template <typename Voxel>
+HWY_INLINE LaneQuad loadRow(const SimdField& field, const Indices& index, std::int32_t offset) {
+  const auto* const voxels = static_cast<const Voxel*>(field.voxels) + offset;
+  if constexpr (std::is_same_v<Voxel, float>) {
+    const Pairs low = loadPairs(voxels, index), high = loadPairs(voxels + 2, index);
+    return {{low.first, low.second, high.first, high.second}};
+  } else if constexpr (std::is_same_v<Voxel, std::uint8_t>) {
+    const Int four = loadInts(voxels, index);
+    return {{toFloat(four & 0xff), toFloat(shiftRight<8>(four) & 0xff),
+             toFloat(shiftRight<16>(four) & 0xff), toFloat(shiftRight<24>(four) & 0xff)}};
+  } else { // 16 bits
+    const Pairs both = loadPairs(voxels, index);
+    const Int low = bitsAsInt(both.first), high = bitsAsInt(both.second);
+    if constexpr (std::is_signed_v<Voxel>)
+      return {{toFloat(shiftRight<16>(shiftLeft<16>(low))), toFloat(shiftRight<16>(low)),
+               toFloat(shiftRight<16>(shiftLeft<16>(high))), toFloat(shiftRight<16>(high))}};
+    else
+      return {{toFloat(low & 0xffff), toFloat(shiftRight<16>(low) & 0xffff), toFloat(high & 0xffff),
+               toFloat(shiftRight<16>(high) & 0xffff)}};
+  }
+}
+
 /// The scalar, trilinear between voxel centers.
 template <typename Voxel>
 HWY_INLINE Float interpolateScalar(const SimdField& field, const Float3& p) {

@@ -123,8 +123,9 @@ bool SimdTracker::isSupported(const Volume& volume, const TransferFunction& tran
   constexpr double maxVoxels = 1 << 17;
   const std::int64_t count = volume.grid.voxelCount();
   constexpr std::int64_t maxCount = std::int64_t{1} << 31; // indices of 32 bits
-  if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > maxCount ||
-      (mixture && !SimdMixture::isSupported(*mixture)))
+  const std::int64_t minColumns = transfer.gradient == GradientKind::sobel ? 4 : 2; // of one load
+  if (transfer.gradientOpacity || volume.grid.size.x() < minColumns || count < 4 ||
+      count > maxCount || (mixture && !SimdMixture::isSupported(*mixture)))
     return false;
   const double diagonal = 2.0 * volume.grid.boundingRadius();
   double greatest = 0.0;

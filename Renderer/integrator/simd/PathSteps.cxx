@@ -181,7 +181,7 @@ private:
   }
 
   Float3 evalGradient(const Float3& p) const {
-    const Float3 difference = centralDifference<Voxel>(m_medium.field, p);
+    const Float3 difference = scalarDifference<Voxel>(m_shading, m_medium.field, p);
     return mapDirection(m_shading.indexDifferenceToGradient, difference);
   }
 

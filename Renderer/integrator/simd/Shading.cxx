@@ -46,6 +46,7 @@ SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, con
                          const Mixture* mixture)
     : hybrid(transfer.shading && transfer.extinction.span() > 0.0),
       surfaceRate(hybrid ? narrow(25.0 * std::pow(transfer.shading->gamma, 3)) : 0.0F),
+      sobel(transfer.gradient == GradientKind::sobel),
       wantNormals(normalsWanted || transfer.shading),
       bounces(static_cast<std::int32_t>(
           std::min<std::uint64_t>(maxBounces, std::numeric_limits<std::int32_t>::max()))),

@@ -32,6 +32,7 @@ struct SimdShading {
   std::optional<SimdLabelWeights> tint;
   bool hybrid;       ///< surface shading is on
   float surfaceRate; ///< 25 gamma^3, of Medium's surface probability
+  bool sobel;        ///< kind of the gradient (GradientKind)
   bool wantNormals;
   std::int32_t bounces; ///< maximum number of scatterings
 

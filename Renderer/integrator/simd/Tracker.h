@@ -61,8 +61,8 @@ double setDomainRay(RayBatch& rays, std::size_t i, const Domain& domain, const R
 class SimdTracker {
 public:
   /// True if floats suffice and the medium is supported: no gradient opacity, at least two voxels
-  /// along x, 4 to 2^31 voxels in total, diagonal at most 2^17 edges of the smallest voxel, optical
-  /// depth across the volume <= 1e5.
+  /// along x (four for Sobel's gradient), 4 to 2^31 in total, diagonal at most 2^17 edges of the
+  /// smallest voxel, optical depth across the volume <= 1e5.
   static bool isSupported(const Volume& volume, const TransferFunction& transfer,
                           const Mixture* mixture = nullptr);
 

@@ -49,7 +49,7 @@ public:
     if (sigma_t != 0.0)
       sigma_t *= contextFactor(index);
     if (sigma_t != 0.0 && m_transfer.gradientOpacity)
-      sigma_t *= (*m_transfer.gradientOpacity)(m_field.gradient(index).norm()).value();
+      sigma_t *= (*m_transfer.gradientOpacity)(opacitySlope(index)).value();
     return clipWeight * sigma_t;
   }
 
@@ -85,11 +85,18 @@ public:
   }
   /// Evaluates the values that the mixture's parts at a point depend on.
   MixturePoint makePoint(const Vec3& index, double clipWeight) const {
-    const double slope = m_mixture->needsGradient() ? m_field.gradient(index).norm() : 0.0;
+    const double slope = m_mixture->needsGradient() ? opacitySlope(index) : 0.0;
     return {index, m_field.value(index), clipWeight, slope};
   }
 
 private:
+  Vec3 shadingGradient(const Vec3& index) const {
+    return m_transfer.gradient == GradientKind::sobel ? m_field.sobelGradient(index)
+                                                      : m_field.gradient(index);
+  }
+  /// |gradient| for gradient opacity.
+  double opacitySlope(const Vec3& index) const { return m_field.gradient(index).norm(); }
+
   /// The context style's factor on the extinction.
   double contextFactor(const Vec3& index) const {
     return m_context && m_context->style().extinction != 1.0 && !m_context->isFocus(index)
@@ -104,12 +111,11 @@ private:
     if (m_context && !m_context->isFocus(index))
       m.albedo = m_context->style().desaturate(m.albedo);
     if (wantGradient || transfer.shading)
-      m.gradient = m_field.gradient(index);
+      m.gradient = shadingGradient(index);
     if (transfer.shading) {
-      const double slope = m.gradient.norm();
       double sigma_t = transfer.extinction(scalar).value();
       if (transfer.gradientOpacity)
-        sigma_t *= (*transfer.gradientOpacity)(slope).value();
+        sigma_t *= (*transfer.gradientOpacity)(opacitySlope(index)).value();
       if (!extraGradient.isZero(0.0))
         m.gradient += m_transfer.extinction.span() * extraGradient;
       m.surfaceProbability =

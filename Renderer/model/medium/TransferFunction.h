@@ -37,13 +37,18 @@ struct SurfaceShading {
   Lobes lobes() const;
 };
 
+/// Gradient of the scalar that gives normals and surfaces (Field::gradient, Field::sobelGradient).
+/// Gradient opacity always takes central differences, as VTK does.
+enum class GradientKind { central, sobel };
+
 struct TransferFunction {
   ScalarFunction extinction; ///< mm^-1 over the scalar
   ColorFunction albedo;      ///< linear Rec. 709, each in [0, 1]
   std::optional<ScalarFunction> gradientOpacity =
-      {};                                     ///< factor over |gradient|, scalar units per mm
-  double g = 0.0;                             ///< Henyey-Greenstein mean cosine, in (-1, 1)
-  std::optional<SurfaceShading> shading = {}; ///< set: hybrid; not set: phase function only
+      {};                                        ///< factor over |gradient|, scalar units per mm
+  double g = 0.0;                                ///< Henyey-Greenstein mean cosine, in (-1, 1)
+  std::optional<SurfaceShading> shading = {};    ///< set: hybrid; not set: phase function only
+  GradientKind gradient = GradientKind::central; ///< that of the volume's own function applies
 
   /// Copy with every knot of extinction and albedo moved by `offset` scalar units.
   TransferFunction withShift(double offset) const {

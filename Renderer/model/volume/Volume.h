@@ -7,6 +7,7 @@
 #include "base/LargePages.h"
 #include "model/volume/Grid.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -84,11 +85,64 @@ public:
     return m_indexGradientToWorld * difference;
   }
 
+  /// Gradient in the same units by the 3x3x3 kernel of Sobel (Sobel and Feldman 1968): central
+  /// differences at the voxels, smoothed by (1, 2, 1) / 4 along both other axes, where voxels of
+  /// the border repeat; trilinear between voxel centers. It has less noise than gradient(), and
+  /// less of a grid's pattern on smooth surfaces.
+  Vec3 sobelGradient(const Vec3& index) const {
+    const SobelAxis x = locateSobel(index, 0), y = locateSobel(index, 1), z = locateSobel(index, 2);
+    std::array<double, 4> alongX, alongY, smooth; // of the four slices
+    for (std::size_t k = 0; k < 4; ++k) {
+      std::array<double, 4> rowsAlongX, smoothRows;
+      for (std::size_t j = 0; j < 4; ++j) {
+        const Voxel* row = m_voxels + z.offsets[k] + y.offsets[j];
+        std::array<double, 4> voxels;
+        for (std::size_t i = 0; i < 4; ++i)
+          voxels[i] = static_cast<double>(row[x.offsets[i]]);
+        rowsAlongX[j] = x.difference(voxels);
+        smoothRows[j] = x.smooth(voxels);
+      }
+      alongX[k] = y.smooth(rowsAlongX);
+      alongY[k] = y.difference(smoothRows);
+      smooth[k] = y.smooth(smoothRows);
+    }
+    return m_indexGradientToWorld * Vec3(z.smooth(alongX), z.smooth(alongY), z.difference(smooth));
+  }
+
 private:
   struct Cell {
     std::int64_t index;
     double fraction;
   };
+
+  /// Sobel's kernel along one axis, interpolated between a cell's voxels; of the values at these
+  /// voxels and their neighbors.
+  struct SobelAxis {
+    std::array<std::int64_t, 4> offsets; ///< of the four voxels
+    double fraction;
+
+    double smooth(const std::array<double, 4>& v) const {
+      const double f = fraction;
+      return 0.25 * ((1.0 - f) * v[0] + (2.0 - f) * v[1] + (1.0 + f) * v[2] + f * v[3]);
+    }
+    /// Per voxel. Exactly 0 if all values are equal.
+    double difference(const std::array<double, 4>& v) const {
+      return 0.5 * ((1.0 - fraction) * (v[2] - v[0]) + fraction * (v[3] - v[1]));
+    }
+  };
+
+  SobelAxis locateSobel(const Vec3& index, int axis) const {
+    const std::array<std::int64_t, 3> strides = {1, m_row, m_slice};
+    const auto [lower, fraction] = cell(index, axis);
+    SobelAxis located{{}, fraction};
+    for (std::int64_t i = 0; i < 4; ++i) {
+      const auto last = static_cast<std::int64_t>(m_last[axis]);
+      located.offsets[static_cast<std::size_t>(i)] =
+          std::clamp<std::int64_t>(lower + i - 1, 0, last) *
+          strides[static_cast<std::size_t>(axis)];
+    }
+    return located;
+  }
 
   Cell cell(const Vec3& index, int axis) const {
     const double x = std::clamp(index[axis], 0.0, m_last[axis]);
