@@ -187,6 +187,12 @@ struct RenderOptionTable {
       {OptionNames("density-scale", "density"), "D", appearanceGroup,
        "Opacity of the whole volume: factor on its extinction, 0 to 1000",
        ValueSpec::number(0.0, 1000.0).bind(scene.density)},
+      {"gradient", "KIND", appearanceGroup,
+       "Gradient of the voxel values that gives surfaces and their normals: sobel (3x3x3 voxels, "
+       "smoother) or central (differences between opposite neighbors, as in VTK); gradient opacity "
+       "is always central",
+       ValueSpec::choice(scene.gradient,
+                         {{"sobel", GradientKind::sobel}, {"central", GradientKind::central}})},
       {"materials", "none|auto|library|FILE", appearanceGroup,
        "Segment colors by material: none, library (Fenestra's), a .json file that extends the "
        "library, or auto: library colors, adjusted so that the focus is distinguishable; opacity "

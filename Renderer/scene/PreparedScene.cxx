@@ -48,8 +48,9 @@ void PreparedScene::prepare() {
     m_sceneTransfer.get(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
   if (m_segments.result() && needsContent(m_namedTransfer.result(), m_sceneTransfer.result()))
     m_content.get(volume, m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus);
-  const auto transfer = m_transfer.get(volume, m_namedTransfer.result(), m_sceneTransfer.result(),
-                                       m_content.result(), r.transferModality, r.shift, r.density);
+  const auto transfer =
+      m_transfer.get(volume, m_namedTransfer.result(), m_sceneTransfer.result(), m_content.result(),
+                     r.transferModality, r.shift, r.density, r.gradient);
   if (const std::string name = resolveMaterials(m_segments.result()); name != noMaterials) {
     makeTint(name);
     if (!isTintOnly(*m_plan))

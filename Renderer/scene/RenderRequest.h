@@ -6,6 +6,7 @@
 #include "integrator/render/Render.h"
 #include "model/camera/Camera.h"
 #include "model/masks/MaskShaping.h"
+#include "model/medium/TransferFunction.h"
 #include "model/volume/Volume.h"
 
 #include <filesystem>
@@ -93,6 +94,7 @@ struct RenderRequest {
       {}; ///< file or preset name; by default the scene's, else derived from the volume
   double shift = 0.0;
   double density = 1.0;
+  GradientKind gradient = GradientKind::sobel;
   std::string lights = "theatre-wet";  ///< file, preset name, or inline JSON
   std::optional<Rgb> environment = {}; ///< replaces the lights' own environment
   std::optional<std::filesystem::path> environmentMap = {};

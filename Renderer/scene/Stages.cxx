@@ -203,12 +203,13 @@ ScanContent findContent(const VolumeHandle& volume, const Handle<SegmentsInput>&
 TransferChoice chooseTransfer(const VolumeHandle& read, const Handle<NamedTransfer>& named,
                               const Handle<SceneTransfer>& scene,
                               const Handle<ScanContent>& content,
-                              const std::optional<Modality>& modality, double shift,
-                              double density) {
+                              const std::optional<Modality>& modality, double shift, double density,
+                              GradientKind gradient) {
   const Volume& volume = read->volume;
   TransferChoice transfer =
       selectTransfer(volume, named, scene, content ? *content : ScanContent(), modality);
   transfer.function = transfer.function.withShift(shift).withDensity(density);
+  transfer.function.gradient = gradient;
   checkExtinction(transfer.function, volume, named ? transfer.source : volume.name);
   if (transfer.function.shading && volume.minimum == volume.maximum)
     throw inputError(ErrorCode::uniformVolume, volume.name,

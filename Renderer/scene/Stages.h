@@ -50,13 +50,13 @@ struct TransferChoice {
 };
 /// Chooses the transfer function: `named`, unless `modality` is not the volume's, else the
 /// scene's, else a default for the volume and its `content` (null: no segments). Then shifts it by
-/// `shift` and scales its extinction by `density`. Throws Error (input) if the volume cannot be
-/// rendered with it.
+/// `shift`, scales its extinction by `density`, and sets its kind of gradient. Throws Error (input)
+/// if the volume cannot be rendered with it.
 TransferChoice chooseTransfer(const VolumeHandle& volume, const Handle<NamedTransfer>& named,
                               const Handle<SceneTransfer>& scene,
                               const Handle<ScanContent>& content,
-                              const std::optional<Modality>& modality, double shift,
-                              double density);
+                              const std::optional<Modality>& modality, double shift, double density,
+                              GradientKind gradient);
 
 /// Warns if the transfer function leaves most of the focus transparent.
 std::vector<Message> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
