@@ -108,6 +108,12 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Transfer",
                [](RenderRequest& r) { r.density = 2.0; },
                {.transfer = true, .majorants = true}},
+        Change{"Gradient",
+               [](RenderRequest& r) {
+                 r.gradient = r.gradient == GradientKind::sobel ? GradientKind::central
+                                                                : GradientKind::sobel;
+               },
+               {.transfer = true, .majorants = true}},
         Change{"TransferByTheVolume",
                [](RenderRequest& r) { r.transfer.reset(); },
                {.transfer = true, .majorants = true}},
