@@ -20,6 +20,8 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
+constexpr const char* smoothingKey = "volume-smoothing";
+
 /// Values of the given options that `isIncluded`, by name; file names relative to `folder`.
 template <typename Predicate>
 ordered_json collectOptions(const OptionValues& options, const fs::path& folder,
@@ -72,11 +74,30 @@ bool isSampleOption(const Option& option) {
          std::ranges::find(ofDisplay, option.name) == std::end(ofDisplay);
 }
 
-ordered_json makeProvenance(const OptionValues& given, const OptionValues& options,
+ordered_json makeProvenance(const OptionValues& given, const RenderJob& job,
                             const fs::path& folder) {
+  constexpr int exact = 17; // significant digits
+  ordered_json settings = collectOptions(job.values, folder, isSampleOption);
+  settings.erase(smoothingKey); // resolved; nothing for the raw volume
+  if (const SmoothingRequest& smoothing = job.options.scene.smoothing;
+      smoothing.kind != SmoothingRequest::Kind::off)
+    settings[smoothingKey] = {smoothing.kind == SmoothingRequest::Kind::automatic
+                                  ? "auto"
+                                  : toString(smoothing.noise, exact)};
   return {{"version", concat(samplingVersionText, " on ", processorText)},
           {"given", collectOptions(given, folder, isImageOption)},
-          {"settings", collectOptions(options, folder, isSampleOption)}};
+          {"settings", std::move(settings)}};
+}
+
+SmoothingRequest readSmoothing(const CheckpointFile& film) {
+  const JsonNode settings = JsonNode(film.metadata(), film.path().string()).at("settings");
+  const auto stored = settings.find(smoothingKey);
+  if (!stored)
+    return {};
+  OptionValues values(renderSyntax.options);
+  for (const JsonNode& value : stored->elements())
+    values.add(smoothingKey, value.text());
+  return readOptions(values).smoothing;
 }
 
 std::vector<fs::path> listInputFiles(const PreparedScene& scene, const RenderOptions& options) {
@@ -142,7 +163,7 @@ Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given, Warn war
       m_path(*job.options.checkpoint),
       m_warn(std::move(warn)),
       m_lock(m_path),
-      m_provenance(makeProvenance(given, job.values, m_path.parent_path())) {
+      m_provenance(makeProvenance(given, job, m_path.parent_path())) {
   if (!m_lock->isHeld())
     throw usageError(m_path, ": another process is writing this file; wait for it, or use another "
                              "--checkpoint");
@@ -166,7 +187,7 @@ Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given,
       m_path(shards.front().path()),
       m_files(std::move(shards)),
       m_isMerge(true),
-      m_provenance(makeProvenance(given, job.values, m_path.parent_path())) {
+      m_provenance(makeProvenance(given, job, m_path.parent_path())) {
   for (const char* key : {"version", "settings"})
     requireSame(m_files.front(), key);
 }

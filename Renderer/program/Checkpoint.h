@@ -15,9 +15,12 @@ namespace fenestra {
 bool isSampleOption(const Option& option);
 
 /// What a checkpoint file stores about its render: version, options as given, and options (after
-/// merging) that samples depend on. File names are relative to `folder`.
-nlohmann::ordered_json makeProvenance(const OptionValues& given, const OptionValues& options,
+/// merging) that samples depend on, with the resolved smoothing. File names are relative to
+/// `folder`.
+nlohmann::ordered_json makeProvenance(const OptionValues& given, const RenderJob& job,
                                       const std::filesystem::path& folder);
+/// Smoothing of the volume that a checkpoint file was rendered from. Throws Error (input).
+SmoothingRequest readSmoothing(const CheckpointFile& film);
 /// All files from which the scene was built; an archive instead of its members.
 std::vector<std::filesystem::path> listInputFiles(const PreparedScene& scene,
                                                   const RenderOptions& options);

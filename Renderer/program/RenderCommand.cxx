@@ -94,6 +94,24 @@ void addClip(Json& json, const PreparedScene& scene, const std::optional<FocusRe
     json["contextRemoved"] = *focus->contextRemoved;
 }
 
+/// Adds what was done to the volume, and what small lesions lose by it.
+void addSmoothing(Json& json, const PreparedScene& scene) {
+  const auto smoothing = scene.smoothing();
+  if (!smoothing)
+    return;
+  Json& entry = json["volumeSmoothing"];
+  entry = {{"noise", smoothing->noise},
+           {"strength", smoothing->strength},
+           {"method", !smoothing->isApplied()    ? "none"
+                      : smoothing->isLogarithmic ? "non-local means of logarithms"
+                                                 : "non-local means"}};
+  if (!smoothing->isApplied())
+    return;
+  entry["islands"] = {{"count", smoothing->islands}, {"mm3", smoothing->islandVolume}};
+  for (const auto& [diameter, percent] : lesionContrasts)
+    entry["lesionContrast"][concat(diameter, " mm")] = 0.01 * percent;
+}
+
 /// Adds display settings, the files that were read, and warnings.
 void addSources(Json& json, const RenderStats& stats, const RenderOptions& options,
                 const PreparedScene& scene) {
@@ -101,6 +119,7 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
   if (std::ranges::any_of(options.outputs, isDisplayFile))
     json["display"] = {{"tone", toString(options.display.view)},
                        {"exposure", options.display.exposure}};
+  addSmoothing(json, scene);
   json["transferFunction"] = toRelativeName(scene.transferName(), folder);
   if (options.preset)
     json["preset"] = toRelativeName(*options.preset, folder);
@@ -126,11 +145,13 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
   const MajorantGrid& majorants = scene.view().majorants;
 
   Json json;
-  json["seconds"] = {
-      {"load", stages.load},         {"materials", stages.materials}, {"classify", stages.classify},
-      {"focus", stages.focus},       {"spline", stages.spline},       {"fill", stages.fill},
-      {"features", stages.features}, {"transport", stats.transport},  {"filter", stats.filter},
-      {"measure", stats.measure},    {"write", stats.write},          {"total", stats.total}};
+  json["seconds"] = {{"load", stages.load},           {"smoothing", stages.smoothing},
+                     {"materials", stages.materials}, {"classify", stages.classify},
+                     {"focus", stages.focus},         {"spline", stages.spline},
+                     {"fill", stages.fill},           {"features", stages.features},
+                     {"transport", stats.transport},  {"filter", stats.filter},
+                     {"measure", stats.measure},      {"write", stats.write},
+                     {"total", stats.total}};
   json["cpuSeconds"] = toSeconds(usage.ru_utime) + toSeconds(usage.ru_stime);
   json["paths"] = c.paths;
   if (stats.checkpointPaths)

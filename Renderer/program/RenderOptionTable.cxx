@@ -193,6 +193,14 @@ struct RenderOptionTable {
        "is always central",
        ValueSpec::choice(scene.gradient,
                          {{"sobel", GradientKind::sobel}, {"central", GradientKind::central}})},
+      {"volume-smoothing", "auto|off|N", appearanceGroup,
+       "Smooths the volume by non-local means, for all outputs alike: off, N (standard deviation "
+       "of the noise, in scalar units, such as HU), or auto: by the noise that it finds, if an "
+       "output is .png or .tif",
+       ValueSpec::text()
+           .bind(options.smoothing, readVolumeSmoothing)
+           .withDefault("off")
+           .withNamedValues({"auto", "off"})},
       {"materials", "none|auto|library|FILE", appearanceGroup,
        "Segment colors by material: none, library (Fenestra's), a .json file that extends the "
        "library, or auto: library colors, adjusted so that the focus is distinguishable; opacity "

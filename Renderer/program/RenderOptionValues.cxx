@@ -37,6 +37,20 @@ void readMargins(const OptionValues& values, const std::string& name,
       throw usageError("--" + name + ": must be from -1000 to 1000 mm");
 }
 
+void readVolumeSmoothing(const OptionValues& values, const std::string& name,
+                         SmoothingRequest& smoothing) {
+  using Kind = SmoothingRequest::Kind;
+  const std::string text = *values.text(name);
+  const bool isWord = text == "auto" || text == "off";
+  const double noise = isWord ? 0.0 : values.numbers(name, 1)[0];
+  if (noise < 0.0)
+    throw usageError("--", name, ": expected auto, off, or a positive number, got '",
+                     toOneLine(text), "'");
+  smoothing = text == "auto" ? SmoothingRequest{Kind::automatic}
+              : noise > 0.0  ? SmoothingRequest{Kind::given, noise}
+                             : SmoothingRequest{Kind::off};
+}
+
 void readPlane(const OptionValues& values, const std::string& name,
                std::optional<PlaneRequest>& plane) {
   const std::vector<double> numbers = values.numbers(name, 6);

@@ -12,6 +12,8 @@
 namespace fenestra {
 
 void readMargins(const OptionValues& values, const std::string& name, std::vector<double>& margins);
+void readVolumeSmoothing(const OptionValues& values, const std::string& name,
+                         SmoothingRequest& smoothing);
 void readPlane(const OptionValues& values, const std::string& name,
                std::optional<PlaneRequest>& plane);
 void readEnvironment(const OptionValues& values, const std::string& name, RenderRequest& scene);

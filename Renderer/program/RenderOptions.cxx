@@ -177,6 +177,15 @@ void checkShard(const OptionValues& values, const RenderOptions& options, bool i
 
 } // namespace
 
+void resolveSmoothing(RenderOptions& options, bool isServer) {
+  const SmoothingPurpose purpose{.hasDisplayImage =
+                                     std::ranges::any_of(options.outputs, isDisplayFile),
+                                 .isServer = isServer,
+                                 .isShard = options.isShard};
+  options.scene.smoothing =
+      isSmoothed(options.smoothing, purpose) ? options.smoothing : SmoothingRequest();
+}
+
 RenderOptions resolveProgress(RenderOptions options) {
   if (options.quiet && options.verbose)
     throw usageError("--quiet and --verbose contradict each other; give only one");
@@ -208,6 +217,7 @@ RenderOptions makeRenderOptions(const OptionValues& given) {
   }
   resolveLayers(values, options);
   resolveDenoising(values, options);
+  resolveSmoothing(options);
   scene.measure = options.stats.has_value();
   return resolveProgress(std::move(options));
 }

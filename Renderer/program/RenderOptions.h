@@ -25,7 +25,8 @@ struct RenderOptions {
   std::vector<std::filesystem::path> outputs; ///< at least one, except for a shard
   NameOrigin outputNaming = NameOrigin::user;
   LayerSet layers = allLayers;
-  Display display = {}; ///< of .png and .tif
+  Display display = {};            ///< of .png and .tif
+  SmoothingRequest smoothing = {}; ///< as given; scene.smoothing is resolved
   Denoise denoise = Denoise::automatic;
   NoiseTarget noiseTarget = NoiseTarget::automatic;  ///< raw or filtered after makeRenderOptions
   std::optional<std::filesystem::path> surface = {}; ///< only with a depth clip
@@ -77,6 +78,9 @@ RenderOptions readOptions(const OptionValues& values);
 
 /// Resolves progress for quiet commands. Throws Error (usage) for both quiet and verbose.
 RenderOptions resolveProgress(RenderOptions options);
+
+/// Resolves which volume the scene renders: as read, or smoothed. `isServer`: for fenestra serve.
+void resolveSmoothing(RenderOptions& options, bool isServer = false);
 
 /// Complete options from all values. Throws Error (usage) for values out of range and for
 /// contradictory options.

@@ -1,6 +1,7 @@
 #include "program/RenderSteps.h"
 
 #include "base/Error.h"
+#include "base/PhysicalMemory.h"
 #include "clip/mesh/SurfaceWriter.h"
 #include "files/images/ImageFormat.h"
 #include "files/images/ImageWriter.h"
@@ -13,8 +14,6 @@
 
 #include <algorithm>
 #include <future>
-
-#include <unistd.h>
 
 namespace fenestra {
 namespace {
@@ -55,6 +54,8 @@ std::map<std::string, std::string> makeHeader(const PreparedScene& scene,
       {"camera", formatCamera(scene.camera().pose())},
       {"look", toRelativeName(scene.transferName(), folder)},
       {"command", concat("fenestra ", join(arguments, " ", quoteForShell))}};
+  if (const auto smoothing = scene.smoothing(); smoothing && smoothing->isApplied())
+    entries["volume"] = describe(*smoothing);
   if (options.preset)
     entries["preset"] = toRelativeName(*options.preset, folder);
   return entries;
@@ -116,8 +117,7 @@ void checkMemory(const RenderRequest& scene) {
       2.0 * sizeof(PixelSums) + (scene.features ? filter : 0.0);
   constexpr double gigabyte = 1e9;
   const double needed = bytesPerPixel * scene.width * scene.height;
-  const double available =
-      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  const double available = physicalMemory();
   if (needed <= available)
     return;
   throw outputError(ErrorCode::outOfMemory, "--size", "an image of ", scene.width, "x",

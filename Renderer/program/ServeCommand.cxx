@@ -22,7 +22,9 @@ public:
         m_values(start.stored),
         m_options(start.options),
         m_outputs(outputs),
-        m_input(m_values, m_source, m_monitor) {}
+        m_input(m_values, m_source, m_monitor) {
+    resolveSmoothing(m_options, true);
+  }
 
   /// Runs until the process ends. Throws Error if the first scene cannot be built.
   [[noreturn]] void run() {
@@ -48,7 +50,8 @@ private:
       OptionValues values = m_values;
       for (const ServeChange& change : changes)
         values = applyChange(change.options, values);
-      const RenderOptions options = makeRenderOptions(mergePreset(values, m_source));
+      RenderOptions options = makeRenderOptions(mergePreset(values, m_source));
+      resolveSmoothing(options, true);
       checkMemory(options.scene);
       PreparedScene scene = m_scene->withRequest(options.scene);
       m_outputs.checkInputs();

@@ -38,19 +38,20 @@ void PreparedScene::prepare() {
   const auto lights = m_namedLights.get(r.lights, r.environment, r.environmentMap); // fails early
   if (r.transfer)
     m_namedTransfer.get(*r.transfer, m_input);
-  const auto volume = m_volume.get(m_input, r.volume);
+  const auto raw = m_volume.get(m_input, r.volume);
   const auto settings = m_settings.get(m_input, r.volume, r.view.isSceneCamera());
   if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
-    m_segments.get(m_input, {r.volume, r.segmentation, r.labels}, volume->volume.grid);
+    m_segments.get(m_input, {r.volume, r.segmentation, r.labels}, raw->volume.grid);
   const auto focus =
-      m_focus.get(m_segments.result(), r.focus, r.focusStyle.shaping, volume->volume.grid);
+      m_focus.get(m_segments.result(), r.focus, r.focusStyle.shaping, raw->volume.grid);
   if (!r.transfer)
-    m_sceneTransfer.get(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
+    m_sceneTransfer.get(m_input, r.volume, {raw->volume.minimum, raw->volume.maximum});
   if (m_segments.result() && needsContent(m_namedTransfer.result(), m_sceneTransfer.result()))
-    m_content.get(volume, m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus);
+    m_content.get(raw, m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus);
   const auto transfer =
-      m_transfer.get(volume, m_namedTransfer.result(), m_sceneTransfer.result(), m_content.result(),
+      m_transfer.get(raw, m_namedTransfer.result(), m_sceneTransfer.result(), m_content.result(),
                      r.transferModality, r.shift, r.density, r.gradient);
+  const VolumeHandle volume = smooth();
   if (const std::string name = resolveMaterials(m_segments.result()); name != noMaterials) {
     makeTint(name);
     if (!isTintOnly(*m_plan))
@@ -58,14 +59,17 @@ void PreparedScene::prepare() {
   }
   m_focusWarnings.get(volume, focus, transfer);
   if (r.view.isAutomatic() && focus->mask)
-    m_view.get(volume, settings, focus, transfer);
+    m_view.get(raw, settings, focus, transfer);
   const auto minMaxGrid =
       m_minMaxGrid.get(volume, MajorantGrid::requiredPadding(transfer->function));
-  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.get(volume, minMaxGrid, transfer);
+  // By the raw volume, so that a request with other outputs shows the same frame.
+  const auto rawMinMaxGrid =
+      volume == raw ? minMaxGrid : m_rawMinMaxGrid.get(raw, minMaxGrid->padding());
+  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.get(raw, rawMinMaxGrid, transfer);
   const auto camera =
-      m_camera.get(r.view, r.width, r.height, volume, settings, bounds, focus, m_view.result());
-  const auto placed = m_lights.get({lights, camera, focus}, volume);
-  const auto clip = m_clip.get(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
+      m_camera.get(r.view, r.width, r.height, raw, settings, bounds, focus, m_view.result());
+  const auto placed = m_lights.get({lights, camera, focus}, raw);
+  const auto clip = m_clip.get(r.clip, r.measure, r.steadyDegrees, raw, settings, focus, camera);
   const double extinction = r.focusStyle.contextExtinction;
   const double saturation =
       m_contrast.get(volume, focus, transfer, currentTint(), r.focusStyle.contextSaturation)
@@ -77,6 +81,36 @@ void PreparedScene::prepare() {
   if (r.features)
     m_features.get(volume, settings, transfer, tintOrMixture(), placed, camera, clip,
                    m_style.result(), majorants);
+}
+
+VolumeHandle PreparedScene::smooth() {
+  const RenderRequest& r = m_request;
+  if (r.smoothing.kind == SmoothingRequest::Kind::off)
+    return m_volume.result();
+  const auto smoothed =
+      m_smoothed.get(m_volume.result(), r.smoothing,
+                     findModality(m_volume->volume, r.transferModality, m_transfer->source));
+  if (smoothed->input && m_transfer->islands)
+    m_islands.get(currentVolume(), m_transfer.result());
+  return currentVolume();
+}
+
+VolumeHandle PreparedScene::currentVolume() const {
+  for (const auto& stage : {m_islands.result(), m_smoothed.result()})
+    if (stage && stage->input)
+      return {stage, &*stage->input};
+  return m_volume.result();
+}
+
+std::optional<SmoothingReport> PreparedScene::smoothing() const {
+  if (!m_smoothed.result())
+    return std::nullopt;
+  SmoothingReport report = m_smoothed->report;
+  if (m_islands.result()) {
+    report.islands = m_islands->report.islands;
+    report.islandVolume = m_islands->report.islandVolume;
+  }
+  return report;
 }
 
 std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segments) const {
@@ -94,7 +128,7 @@ void PreparedScene::makeTint(const std::string& name) {
   const bool isAdjusted = materials->hasColorAdjustment();
   const auto hasVoxels = m_hasVoxels.get(m_segments.result());
   if (materials->table.detectsSkin)
-    m_skin.get(m_volume.result());
+    m_skin.get(currentVolume());
   const auto plan = m_plan.get(m_segments.result(), hasVoxels, materials, r.materialChanges,
                                isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result());
   const auto weights = m_labelWeights.get(m_segments.result(), plan->parts, m_skin.result(),
@@ -104,7 +138,7 @@ void PreparedScene::makeTint(const std::string& name) {
   if (!isAdjusted || !focus())
     return;
   const auto interfaces =
-      m_interfaces.get(m_volume.result(), m_focus.result(), transfer, weights, plan->isFocus);
+      m_interfaces.get(currentVolume(), m_focus.result(), transfer, weights, plan->isFocus);
   const auto contrast = m_tintContrast.get(interfaces, plan, tint, materials, transfer,
                                            r.focusStyle.contextSaturation);
   m_adjustedTint.get(tint, plan, contrast, transfer);
@@ -115,11 +149,13 @@ StageSeconds PreparedScene::seconds() const {
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
                   m_segments.seconds() + m_focus.seconds() + m_sceneTransfer.seconds() +
                   m_hasVoxels.seconds() + m_content.seconds() + m_transfer.seconds(),
+          .smoothing = m_smoothed.seconds() + m_islands.seconds(),
           .materials = m_materials.seconds() + m_plan.seconds() + m_skin.seconds() +
                        m_labelWeights.seconds() + m_tint.seconds() + m_interfaces.seconds() +
                        m_tintContrast.seconds() + m_adjustedTint.seconds() + m_mixture.seconds(),
-          .classify = m_minMaxGrid.seconds() + m_occupiedBounds.seconds() + m_contrast.seconds() +
-                      m_style.seconds() + m_majorants.seconds(),
+          .classify = m_minMaxGrid.seconds() + m_rawMinMaxGrid.seconds() +
+                      m_occupiedBounds.seconds() + m_contrast.seconds() + m_style.seconds() +
+                      m_majorants.seconds(),
           .focus = clip.focusSeconds,
           .spline = clip.splineSeconds,
           .fill = clip.fillSeconds,
@@ -127,7 +163,7 @@ StageSeconds PreparedScene::seconds() const {
 }
 
 UpdatedStages PreparedScene::updatedStages() const {
-  return {m_volume.isUpdated(),
+  return {m_volume.isUpdated() || m_smoothed.isUpdated() || m_islands.isUpdated(),
           m_focus.isUpdated(),
           m_transfer.isUpdated(),
           m_camera.isUpdated(),
@@ -145,6 +181,10 @@ std::vector<std::string> PreparedScene::choices() const {
                            : m_transfer->isByModality ? " (by modality)"
                                                       : "";
   std::vector<std::string> facts = {concat("transfer function: ", transferName(), from)};
+  if (const auto report = smoothing())
+    facts.push_back(report->isApplied() ? concat("volume: ", describe(*report))
+                                        : concat("volume: not smoothed, its noise is ",
+                                                 toString(report->noise, 2)));
   if (r.environment || r.environmentMap)
     facts.emplace_back("lights: environment");
   else

@@ -5,6 +5,7 @@
 
 #include "integrator/render/Render.h"
 #include "scene/Stages.h"
+#include "scene/VolumeSmoothing.h"
 
 #include <tuple>
 
@@ -12,8 +13,8 @@ namespace fenestra {
 
 /// Wall-clock seconds per stage, for the statistics; 0: the result was shared.
 struct StageSeconds {
-  double load = 0.0, materials = 0.0, classify = 0.0, focus = 0.0, spline = 0.0, fill = 0.0,
-         features = 0.0;
+  double load = 0.0, smoothing = 0.0, materials = 0.0, classify = 0.0, focus = 0.0, spline = 0.0,
+         fill = 0.0, features = 0.0;
 };
 
 /// Stages that were computed for a scene; false: shared with the previous scene.
@@ -40,7 +41,10 @@ public:
     return {volume(), transfer(),       *m_majorants, *m_lights,         *m_camera,
             clip(),   m_settings->crop, style(),      medium.tint.get(), medium.mixture.get()};
   }
-  const Volume& volume() const { return m_volume->volume; }
+  /// The volume that is rendered: as read, or smoothed.
+  const Volume& volume() const { return currentVolume()->volume; }
+  /// What smoothing did; nullopt: the request renders the volume as read.
+  std::optional<SmoothingReport> smoothing() const;
   /// Bounding box of the volume, or its part inside a Slicer scene's crop box.
   Domain domain() const { return {volume().grid, m_settings->crop}; }
   /// Mask of the focus; null without one.
@@ -82,6 +86,9 @@ private:
   /// Name of the materials to use; `segments`: null without labels.
   std::string resolveMaterials(const Handle<SegmentsInput>& segments) const;
   void makeTint(const std::string& name);
+  /// Smooths the volume if the request says so. Returns currentVolume().
+  VolumeHandle smooth();
+  VolumeHandle currentVolume() const;
   const Handle<Tint>& currentTint() const {
     return m_adjustedTint.result() ? m_adjustedTint.result() : m_tint.result();
   }
@@ -93,10 +100,11 @@ private:
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
                     s.m_focus, s.m_sceneTransfer, s.m_hasVoxels, s.m_content, s.m_transfer,
-                    s.m_materials, s.m_skin, s.m_plan, s.m_labelWeights, s.m_tint, s.m_interfaces,
-                    s.m_tintContrast, s.m_adjustedTint, s.m_mixture, s.m_focusWarnings, s.m_view,
-                    s.m_minMaxGrid, s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip,
-                    s.m_contrast, s.m_style, s.m_majorants, s.m_features);
+                    s.m_smoothed, s.m_islands, s.m_materials, s.m_skin, s.m_plan, s.m_labelWeights,
+                    s.m_tint, s.m_interfaces, s.m_tintContrast, s.m_adjustedTint, s.m_mixture,
+                    s.m_focusWarnings, s.m_view, s.m_minMaxGrid, s.m_rawMinMaxGrid,
+                    s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
+                    s.m_majorants, s.m_features);
   }
 
   RenderRequest m_request;
@@ -111,6 +119,8 @@ private:
   CachedStage<&findNonEmpty> m_hasVoxels;        ///< unused without segments
   CachedStage<&findContent> m_content;           ///< unused if the transfer function is given
   CachedStage<&chooseTransfer> m_transfer;
+  CachedStage<&smoothVolume> m_smoothed; ///< this and the next: unused for the raw volume
+  CachedStage<&dropIslands> m_islands;
   CachedStage<&findMaterials> m_materials; ///< this and the next four: unused without materials
   CachedStage<&findSkin> m_skin;           ///< unused unless the materials detect skin
   CachedStage<&makeTintPlan> m_plan;
@@ -124,6 +134,7 @@ private:
   CachedStage<&checkFocus> m_focusWarnings;
   CachedStage<&chooseView> m_view; ///< used only by automatic views
   CachedStage<&makeMinMaxGrid> m_minMaxGrid;
+  CachedStage<&makeMinMaxGrid> m_rawMinMaxGrid; ///< used only for the bounds of a smoothed volume
   CachedStage<&findOccupiedBounds> m_occupiedBounds; ///< unused with the scene's camera
   CachedStage<&placeCamera> m_camera;
   CachedStage<&placeLights> m_lights;

@@ -5,6 +5,7 @@
 #include "clip/surface/ClippingSurface.h"
 #include "integrator/render/Render.h"
 #include "model/camera/Camera.h"
+#include "model/filtering/SmoothingRequest.h"
 #include "model/masks/MaskShaping.h"
 #include "model/medium/TransferFunction.h"
 #include "model/volume/Volume.h"
@@ -92,6 +93,9 @@ struct RenderRequest {
   std::vector<std::string> materialChanges = {}; ///< arguments of parseMaterialChange
   std::optional<std::string> transfer =
       {}; ///< file or preset name; by default the scene's, else derived from the volume
+  /// Smoothing of the volume. `automatic`: with estimated noise; whether the outputs allow it is
+  /// already decided (isSmoothed).
+  SmoothingRequest smoothing = {};
   double shift = 0.0;
   double density = 1.0;
   GradientKind gradient = GradientKind::sobel;

@@ -92,7 +92,8 @@ TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>&
                                    "the transfer function is for CT, but this volume does not seem "
                                    "to be CT"));
   if (named && (!modality || isPlausibleModality(*modality, volume)))
-    return {fitToVolume(named->transfer, volume, content), named->source, warnings};
+    return {fitToVolume(named->transfer, volume, content), named->source, warnings, false,
+            named->transfer.islands};
   if (named)
     warnings.push_back(makeMessage(
         ErrorCode::implausiblePresetModality, named->source,
@@ -103,8 +104,8 @@ TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>&
   const std::optional<std::string> preset = chooseTransferPreset(volume, content);
   if (!preset)
     return {makeRelativeTransfer(volume), "by the volume's range", warnings};
-  return {fitToVolume(findTransfer(*preset, Input({})).transfer, volume, content), *preset,
-          warnings, true};
+  const TransferFile file = findTransfer(*preset, Input({})).transfer;
+  return {fitToVolume(file, volume, content), *preset, warnings, true, file.islands};
 }
 
 /// The requested plane, else a plane fitted to the focus.

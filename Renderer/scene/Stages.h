@@ -46,7 +46,8 @@ struct TransferChoice {
   TransferFunction function;
   std::string source; ///< a file, a preset, a node, or "by the volume's range"
   std::vector<Message> warnings = {};
-  bool isByModality = false; ///< a preset, chosen as a default
+  bool isByModality = false;          ///< a preset, chosen as a default
+  std::optional<double> islands = {}; ///< TransferFile::islands
 };
 /// Chooses the transfer function: `named`, unless `modality` is not the volume's, else the
 /// scene's, else a default for the volume and its `content` (null: no segments). Then shifts it by

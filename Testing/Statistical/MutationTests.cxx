@@ -2,13 +2,15 @@
 // build contains all of them (Mutations/ApplyMutations.cmake). Each is switched on for one
 // combination after another, until Fenestra's image differs from the oracle's as significantly
 // as the suite requires. An entry's "integrator" is the one in which it shows: "simd" (the
-// default), "scalar" or "both". Entries with "shows": "estimated error" affect no mean; they must
-// show in the images' standard errors (ErrorRatio.h).
+// default), "scalar" or "both". Entries with "shows" affect no mean of these images; they must show
+// elsewhere: "estimated error", in the images' standard errors (ErrorRatio.h); "request", in which
+// volume a request renders.
 
 #include "Comparison.h"
 #include "ErrorRatio.h"
 #include "Mutations/Mutant.h"
 #include "RunSettings.h"
+#include "model/filtering/SmoothingRequest.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -22,12 +24,12 @@ namespace {
 struct Mutation {
   std::string name, why;
   Integrator integrator;    ///< in which it shows
-  bool inEstimatedError;    ///< shows in the images' standard errors, not in the matrix
+  std::string shows;        ///< where, if not in the matrix
   std::string foundIn = {}; ///< first combination in which it shows, or "the estimated error"
   double probability = 1.0; ///< where it was found, or minimum so far
   std::vector<std::pair<double, Combination>> candidates = {}; ///< probabilities in the matrix
 
-  bool isPending() const { return foundIn.empty() && !inEstimatedError; }
+  bool isPending() const { return foundIn.empty() && shows.empty(); }
 };
 
 /// Integrators in which an entry of mutations.json shows.
@@ -56,7 +58,7 @@ std::vector<Mutation> readMutations() {
                : integrator == Integrator::simd        ? " (SIMD integrator)"
                                                        : " (scalar integrator)";
         mutations.push_back(
-            {entry.at("name"), why, integrator, entry.value("shows", "") == "estimated error"});
+            {entry.at("name"), why, integrator, entry.value("shows", std::string())});
       }
   return mutations;
 }
@@ -81,13 +83,35 @@ void testEstimatedErrors(std::vector<Mutation>& mutations, double bound) {
   for (const Integrator integrator : {Integrator::simd, Integrator::scalar})
     EXPECT_GT(computeErrorProbability(integrator), bound) << "without a mutation";
   for (Mutation& mutation : mutations)
-    if (mutation.inEstimatedError) {
+    if (mutation.shows == "estimated error") {
       const ActiveMutation active(mutation.name);
       mutation.probability = computeErrorProbability(mutation.integrator);
       std::cout << mutation.name << ": in the estimated error, probability " << mutation.probability
                 << '\n';
       if (mutation.probability <= bound)
         mutation.foundIn = "the estimated error";
+    }
+}
+
+/// True if every purpose gets the volume that it should.
+bool areRequestsRight() {
+  using Kind = SmoothingRequest::Kind;
+  const SmoothingRequest automatic{Kind::automatic}, given{Kind::given, 20.0};
+  const SmoothingPurpose measurement, shown{.hasDisplayImage = true}, server{.isServer = true},
+      shard{.hasDisplayImage = true, .isShard = true};
+  return isSmoothed(automatic, shown) && isSmoothed(automatic, server) &&
+         !isSmoothed(automatic, measurement) && !isSmoothed(automatic, shard) &&
+         isSmoothed(given, measurement) && !isSmoothed({}, shown);
+}
+
+/// Tests the mutations that show in which volume a request renders.
+void testRequests(std::vector<Mutation>& mutations) {
+  EXPECT_TRUE(areRequestsRight()) << "without a mutation";
+  for (Mutation& mutation : mutations)
+    if (mutation.shows == "request") {
+      const ActiveMutation active(mutation.name);
+      if (!areRequestsRight())
+        mutation.foundIn = "the requests";
     }
 }
 
@@ -135,6 +159,7 @@ TEST(Mutations, AreAllFound) {
   std::vector<Mutation> mutations = readMutations();
   ASSERT_FALSE(mutations.empty());
   testEstimatedErrors(mutations, significanceLevel(count));
+  testRequests(mutations);
   for (const Combination& c : makeCombinations(count)) {
     std::vector<Mutation*> pending;
     for (Mutation& mutation : mutations)

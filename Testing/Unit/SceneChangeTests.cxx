@@ -135,6 +135,11 @@ INSTANTIATE_TEST_SUITE_P(
             "Materials",
             [](RenderRequest& r) { r.materials = "library"; },
             {.majorants = true, .tint = true, .labelWeights = true}}, // the context keeps its color
+        Change{"VolumeSmoothing",
+               [](RenderRequest& r) {
+                 r.smoothing = {SmoothingRequest::Kind::given, 20.0};
+               },
+               {.volume = true, .majorants = true, .minMaxGrid = true}},
         Change{"Volume",
                [](RenderRequest& r) { r.input = *r.segmentation; },
                {true, true, true, true, true, true, true, true}}),

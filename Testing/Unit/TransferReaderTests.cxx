@@ -30,6 +30,12 @@ TEST(TransferReader, ReadsFenestraJson) {
   EXPECT_FALSE(minimal.shading);
 }
 
+TEST(TransferReader, IslandsAreAVolume) {
+  const std::string rest = R"("extinction": [[0, 1]], "albedo": [[0, 1, 1, 1]]})";
+  EXPECT_EQ(parseTransferJson(R"({"islands": 400, )" + rest, "test").islands, 400.0);
+  EXPECT_FALSE(parseTransferJson("{" + rest, "test").islands);
+}
+
 TEST(TransferReader, RelativeScalarsAreFractionsOfAScalarRange) {
   const std::string rest =
       R"("extinction": [[0.5, 0], [1, 4]], "albedo": [[0, 0, 0, 0], [1, 1, 1, 1]]})";
@@ -120,6 +126,7 @@ TEST(TransferReader, ErrorNamesTheInvalidField) {
                 "invalid-field: roughness");
   expectRefusal("{" + e + "," + a + R"(, "shading": "hybrid", "specular": 1.5})",
                 "invalid-field: specular");
+  expectRefusal("{" + e + "," + a + R"(, "islands": -1})", "invalid-field: islands");
   expectRefusal("[]", "invalid-file");
   expectRefusal("", "damaged-file");
   expectRefusal("{\"extinction\": [[0,", "damaged-file");

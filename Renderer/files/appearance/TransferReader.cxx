@@ -30,8 +30,8 @@ std::optional<SurfaceShading> readShading(const JsonNode& root, double g) {
 }
 
 TransferFile readFenestraJson(const JsonNode& root) {
-  root.allowOnly(
-      {"scalars", "extinction", "albedo", "color", "g", "shading", "specular", "roughness"});
+  root.allowOnly({"scalars", "extinction", "albedo", "color", "g", "shading", "specular",
+                  "roughness", "islands"});
   const ColorKind kind = findColorKind(root);
   const double g = readMeanCosine(root, 0.0, kind);
   ScalarFunction extinction = readCurve<1>(root.at("extinction"), maxMagnitude);
@@ -44,7 +44,10 @@ TransferFile readFenestraJson(const JsonNode& root) {
   transfer.shading = readShading(root, g);
   const auto scalars = root.find("scalars");
   const std::size_t unit = scalars ? scalars->choice({"absolute", "relative", "tissues"}) : 0;
-  return {std::move(transfer), static_cast<TransferFile::Scalars>(unit)};
+  TransferFile file{std::move(transfer), static_cast<TransferFile::Scalars>(unit)};
+  if (const auto islands = root.find("islands"))
+    file.islands = islands->number(0.0, maxMagnitude);
+  return file;
 }
 
 // ---- Slicer's .vp.json

@@ -17,6 +17,9 @@ struct TransferFile {
   /// What the function's scalars are. MR and ultrasound have no unit: there, scalars are relative
   /// to a volume's range (0: lower end, 1: upper end), or to its tissues (TissueScale).
   enum class Scalars { absolute, relative, tissues } scalars = Scalars::absolute;
+  /// Connected opaque parts of a smoothed volume that are smaller than this are made transparent,
+  /// mm^3 (scene/VolumeSmoothing.h).
+  std::optional<double> islands = {};
 
   /// Function whose scalars 0, 1, ... are moved to `anchors`, at least two and ascending, linearly
   /// between and beyond them.

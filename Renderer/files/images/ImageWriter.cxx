@@ -122,15 +122,16 @@ std::string insertTexts(std::string png, const std::string& comment) {
   return png;
 }
 
-/// Comment of a display image: tone and exposure, and the header's description of the denoiser;
-/// empty: neither.
+/// Comment of a display image: tone and exposure, and the header's descriptions of denoiser and
+/// volume; empty: neither.
 std::string makeComment(const Image& image, const Display& display) {
   std::string comment;
   if (display.view != DisplayView::standard)
     comment =
         concat("tone ", toString(display.view), ", exposure ", toString(display.exposure), " EV");
-  if (const auto found = image.header.find("filter"); found != image.header.end())
-    comment += (comment.empty() ? "" : "; ") + found->second;
+  for (const auto& [key, prefix] : {std::pair("filter", ""), std::pair("volume", "volume ")})
+    if (const auto found = image.header.find(key); found != image.header.end())
+      comment += concat(comment.empty() ? "" : "; ", prefix, found->second);
   return comment;
 }
 

@@ -19,7 +19,7 @@ namespace fenestra {
 ///   denoised.R, G, B, A to the vector volume "<stem>-denoised.nrrd".
 /// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through the display transform, with straight
 ///   alpha if any pixel is not opaque, and marks, placed by `plane`. A comment holds tone, exposure
-///   and the header's "filter".
+///   and the header's "filter" and "volume".
 /// Equal images give equal bytes, and every file has Fenestra's provenance tag. Throws Error:
 /// request for another extension or missing R, G, B; output if the file cannot be written.
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,

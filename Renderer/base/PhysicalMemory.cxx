@@ -1,0 +1,12 @@
+#include "base/PhysicalMemory.h"
+
+#include <unistd.h>
+
+namespace fenestra {
+
+double physicalMemory() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) *
+         static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
+} // namespace fenestra

@@ -1,0 +1,174 @@
+// --volume-smoothing: one request shows one medium, and its results say which.
+
+#include "CommandTesting.h"
+#include "ImageTesting.h"
+
+#include <nlohmann/json.hpp>
+
+#include <random>
+
+namespace fenestra::SmoothingCommandTests {
+namespace {
+
+/// Folder with a noisy CT of a box in air.
+class SmoothingCommand : public ::testing::Test {
+protected:
+  SmoothingCommand() {
+    std::mt19937 random(1);
+    std::string noisy, clean;
+    for (int i = 0; i < edge * edge * edge; ++i) {
+      const auto isInside = [](int x) { return x >= 3 && x < edge - 3; };
+      const bool isBox =
+          isInside(i % edge) && isInside(i / edge % edge) && isInside(i / edge / edge);
+      int noise = -60; // the sum of 8 numbers has a standard deviation of 14.8
+      for (int k = 0; k < 8; ++k)
+        noise += static_cast<int>(random() % 16);
+      const bool isIsland = i == edge * edge + edge + 1;
+      append(isIsland ? 1200 : isBox ? 60 : -1000, clean);
+      append((isIsland ? 1200 : isBox ? 60 : -1000) + noise, noisy);
+    }
+    const NrrdText text{.sizes = "20 20 20"};
+    folder.write("noisy.nrrd", text.encode(noisy));
+    folder.write("clean.nrrd", text.encode(clean));
+  }
+
+  Outcome render(const Arguments& arguments, const std::string& volume = "noisy.nrrd") const {
+    Arguments all = {volume, "--size", "16x16", "--samples", "2", "--progress", "none"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const Outcome outcome = run(all, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome;
+  }
+  nlohmann::json readStats(const std::string& file) const {
+    return nlohmann::json::parse(readBytes(folder / file));
+  }
+  bool isSmoothed(const std::string& image) const {
+    return readImage(folder / image).header.contains("volume");
+  }
+
+  static constexpr int edge = 20;
+  TemporaryFolder folder;
+
+private:
+  static void append(int value, std::string& samples) {
+    samples += static_cast<char>(value & 0xff);
+    samples += static_cast<char>(value >> 8 & 0xff);
+  }
+};
+
+TEST_F(SmoothingCommand, MeasurementsAloneStayRaw) {
+  render({"--volume-smoothing", "off", "-o", "off.exr"});
+  render({"--volume-smoothing", "auto", "-o", "auto.exr", "-o", "auto.nrrd", "--stats-json",
+          "auto.json"});
+  expectSameImage(folder / "off.exr", folder / "auto.exr");
+  EXPECT_FALSE(isSmoothed("auto.exr"));
+  EXPECT_FALSE(readStats("auto.json").contains("volumeSmoothing"));
+}
+
+TEST_F(SmoothingCommand, AllOutputsShowTheMediumOfTheDisplayImage) {
+  render({"--volume-smoothing", "off", "-o", "off.exr", "--stats-json", "off.json"});
+  render({"--volume-smoothing", "auto", "-o", "alone.png"});
+  const Outcome both = render({"--volume-smoothing", "auto", "-o", "both.exr", "-o", "both.png",
+                               "-o", "both.nrrd", "--stats-json", "both.json", "--verbose"});
+  EXPECT_EQ(readBytes(folder / "alone.png"), readBytes(folder / "both.png"));
+  EXPECT_NE(readImage(folder / "both.exr").channels, readImage(folder / "off.exr").channels);
+  EXPECT_EQ(readImage(folder / "both.exr").header.at("camera"),
+            readImage(folder / "off.exr").header.at("camera"));
+  EXPECT_TRUE(isSmoothed("both.exr"));
+  for (const char* file : {"both.png", "both.nrrd"})
+    EXPECT_NE(readBytes(folder / file).find("non-local means"), std::string::npos) << file;
+  EXPECT_NE(both.messages.find("non-local means"), std::string::npos) << both.messages;
+
+  EXPECT_FALSE(readStats("off.json").contains("volumeSmoothing"));
+  const nlohmann::json smoothing = readStats("both.json").at("volumeSmoothing");
+  EXPECT_NEAR(smoothing.at("noise"), 14.8, 2.0);
+  EXPECT_GT(smoothing.at("strength"), 10.0);
+  EXPECT_EQ(smoothing.at("method"), "non-local means");
+  EXPECT_EQ(smoothing.at("lesionContrast").size(), 3U);
+}
+
+TEST_F(SmoothingCommand, VolumeWithoutNoiseIsUnchanged) {
+  render({"--volume-smoothing", "off", "-o", "off.png"}, "clean.nrrd");
+  render({"--volume-smoothing", "auto", "-o", "auto.png", "--stats-json", "s.json"}, "clean.nrrd");
+  EXPECT_EQ(readBytes(folder / "off.png"), readBytes(folder / "auto.png"));
+  EXPECT_EQ(readStats("s.json").at("volumeSmoothing").at("method"), "none");
+}
+
+TEST_F(SmoothingCommand, GivenNoiseAppliesToEveryRequest) {
+  render({"--volume-smoothing", "15", "-o", "given.exr", "--stats-json", "s.json"}, "clean.nrrd");
+  EXPECT_TRUE(isSmoothed("given.exr"));
+  EXPECT_EQ(readStats("s.json").at("volumeSmoothing").at("noise"), 15.0);
+}
+
+TEST_F(SmoothingCommand, IslandsOfOpacityAreRemovedWithTheNoise) {
+  const std::string transfer =
+      R"({"extinction": [[150, 0], [300, 5]], "color": [[150, "#808080"]], "islands": 9})";
+  const auto count = [&](const std::string& kind) {
+    render({"--volume-smoothing", kind, "--transfer", transfer, "-o", "a.png", "--stats-json",
+            "s.json"});
+    return readStats("s.json");
+  };
+  const nlohmann::json smoothing = count("auto").at("volumeSmoothing");
+  EXPECT_EQ(smoothing.at("islands").at("count"), 1);
+  EXPECT_EQ(smoothing.at("islands").at("mm3"), 1.0);
+  EXPECT_GT(count("off").at("collisions"), 0);
+  EXPECT_EQ(count("auto").at("collisions"), 0);
+}
+
+TEST_F(SmoothingCommand, CheckpointOfAnotherMediumIsRejected) {
+  const Arguments raw = {"--volume-smoothing", "auto", "--checkpoint", "a.film", "-o", "a.exr"};
+  render(raw);
+  Arguments shown = raw;
+  shown.insert(shown.end(), {"-o", "a.png"});
+  shown.insert(shown.begin(), {"noisy.nrrd", "--size", "16x16", "--samples", "2"});
+  const Outcome outcome = run(shown, folder.path());
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("--volume-smoothing"), std::string::npos) << outcome.err;
+  render(raw); // still resumes
+}
+
+TEST_F(SmoothingCommand, ShardsAreOfTheRawVolumeAndMergeSaysSo) {
+  for (const char* shard : {"1/2", "2/2"})
+    render({"--volume-smoothing", "auto", "--shard", shard, "--checkpoint",
+            shard[0] == '1' ? "1.film" : "2.film"});
+  render({"--volume-smoothing", "off", "-o", "off.exr"});
+  const Outcome merged =
+      run({"merge", "1.film", "2.film", "-o", "merged.exr", "-o", "merged.png"}, folder.path());
+  ASSERT_EQ(merged.status, 0) << merged.err;
+  expectSameImage(folder / "off.exr", folder / "merged.exr");
+  EXPECT_NE(merged.err.find("--volume-smoothing"), std::string::npos) << merged.err;
+
+  render({"--volume-smoothing", "auto", "--checkpoint", "shown.film", "-o", "shown.png"});
+  const Outcome again = run({"merge", "shown.film", "-o", "again.exr"}, folder.path());
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(isSmoothed("again.exr"));
+}
+
+TEST_F(SmoothingCommand, ServerShowsTheSmoothedVolumeInEveryFile) {
+  Process server({"serve", "noisy.nrrd", "--size", "16x16", "--samples", "2", "--volume-smoothing",
+                  "auto", "-o", "a.exr"},
+                 folder.path());
+  const auto waitForImage = [&](const std::string& id) {
+    return server.waitForOutput("\"picture\",\"id\":" + id + ",[^\n]*\"done\":true[^\n]*\n");
+  };
+  ASSERT_TRUE(waitForImage("null")) << server.output();
+  EXPECT_TRUE(isSmoothed("a.exr"));
+  server.write("{\"id\": 1, \"volume-smoothing\": \"off\"}\n");
+  ASSERT_TRUE(waitForImage("1")) << server.output();
+  EXPECT_FALSE(isSmoothed("a.exr"));
+  server.write("{\"id\": 2, \"volume-smoothing\": \"auto\"}\n");
+  ASSERT_TRUE(waitForImage("2")) << server.output();
+  EXPECT_TRUE(isSmoothed("a.exr"));
+}
+
+TEST_F(SmoothingCommand, RejectsOtherValues) {
+  for (const char* value : {"on", "-3", "nan", "1,2", "3 HU"}) {
+    const Outcome outcome = run(
+        {"noisy.nrrd", std::string("--volume-smoothing=") + value, "-o", "a.png"}, folder.path());
+    EXPECT_EQ(outcome.status, 2) << value;
+    EXPECT_NE(outcome.err.find("--volume-smoothing: "), std::string::npos) << outcome.err;
+  }
+}
+
+} // namespace
+} // namespace fenestra::SmoothingCommandTests
