@@ -69,7 +69,7 @@ void addContrast(Json& json, const PreparedScene& scene) {
                       {"accent", accentColors[tint->adjustment.accent].name}});
 }
 
-/// Adds the measures of the clip.
+/// Adds the margins of the focus and the measures of the clip.
 void addClip(Json& json, const PreparedScene& scene, const std::optional<FocusReport>& focus) {
   const ClipResult& clip = scene.clipResult();
   if (clip.mismatch)
@@ -79,6 +79,12 @@ void addClip(Json& json, const PreparedScene& scene, const std::optional<FocusRe
     json["boundarySlopeJump"] = toJson(boundary->slopeJump);
     json["boundaryDepthJumps"] = boundary->depthJumpFraction;
   }
+  for (const SegmentMargin& margin : scene.margins())
+    json["organMargins"].push_back({{"segment", margin.segment},
+                                    {"applied", margin.isApplied},
+                                    {"meanMm", margin.mean},
+                                    {"p95Mm", margin.p95},
+                                    {"volumeMm3", margin.volume}});
   for (const ControlPoint& point : clip.controlPoints) {
     const Vec2 raster = scene.camera().toRaster(point.site);
     json["controlPoints"].push_back({raster.x(), raster.y()});

@@ -76,8 +76,8 @@ struct RenderOptionTable {
       {"paper", "", sceneGroup, describePaperConditions(), ValueSpec::notInPanel()},
       {"margin", "MM,...", clipGroup,
        "Grows the focus by this distance, or shrinks it (negative): one value for all its "
-       "segments, or one per segment [0]",
-       ValueSpec::numbers().bind(focus.shaping.margins, readMargins), OverrideGroup::focus,
+       "segments, or one per segment; auto: in CT, removes what is another tissue [0]",
+       ValueSpec::text().withNamedValues({"auto"}).bind(focus, readMargins), OverrideGroup::focus,
        Requires::focus},
       {"label-smoothing", "MM", clipGroup,
        "Smooths the segments by a Gaussian of this standard deviation; thick slices are "

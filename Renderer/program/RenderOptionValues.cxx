@@ -28,11 +28,15 @@ Rgb parseLinearColor(const OptionValues& values, const std::string& name,
 
 } // namespace
 
-void readMargins(const OptionValues& values, const std::string& name,
-                 std::vector<double>& margins) {
-  const auto commas = std::ranges::count(*values.text(name), ',');
-  margins = values.numbers(name, 1 + static_cast<std::size_t>(commas));
-  for (const double margin : margins)
+void readMargins(const OptionValues& values, const std::string& name, FocusRequest& focus) {
+  const std::string text = *values.text(name);
+  focus.shaping.margins.clear();
+  focus.hasOrganMargin = text == "auto";
+  if (focus.hasOrganMargin)
+    return;
+  const auto commas = std::ranges::count(text, ',');
+  focus.shaping.margins = values.numbers(name, 1 + static_cast<std::size_t>(commas));
+  for (const double margin : focus.shaping.margins)
     if (std::abs(margin) > 1000.0)
       throw usageError("--" + name + ": must be from -1000 to 1000 mm");
 }

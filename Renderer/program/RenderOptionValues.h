@@ -11,7 +11,7 @@
 
 namespace fenestra {
 
-void readMargins(const OptionValues& values, const std::string& name, std::vector<double>& margins);
+void readMargins(const OptionValues& values, const std::string& name, FocusRequest& focus);
 void readVolumeSmoothing(const OptionValues& values, const std::string& name,
                          SmoothingRequest& smoothing);
 void readPlane(const OptionValues& values, const std::string& name,

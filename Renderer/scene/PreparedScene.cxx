@@ -1,6 +1,7 @@
 #include "scene/PreparedScene.h"
 
 #include "base/Text.h"
+#include "scene/Defaults.h"
 #include "scene/SegmentMaterials.h"
 
 #include <algorithm>
@@ -42,8 +43,11 @@ void PreparedScene::prepare() {
   const auto settings = m_settings.get(m_input, r.volume, r.view.isSceneCamera());
   if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
     m_segments.get(m_input, {r.volume, r.segmentation, r.labels}, raw->volume.grid);
+  if (r.focusStyle.hasOrganMargin && !r.focus.empty() &&
+      isPlausibleModality(Modality::ct, raw->volume))
+    m_trimmed.get(m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus, raw);
   const auto focus =
-      m_focus.get(m_segments.result(), r.focus, r.focusStyle.shaping, raw->volume.grid);
+      m_focus.get(currentSegments(), r.focus, r.focusStyle.shaping, raw->volume.grid);
   if (!r.transfer)
     m_sceneTransfer.get(m_input, r.volume, {raw->volume.minimum, raw->volume.maximum});
   if (m_segments.result() && needsContent(m_namedTransfer.result(), m_sceneTransfer.result()))
@@ -131,7 +135,7 @@ void PreparedScene::makeTint(const std::string& name) {
     m_skin.get(currentVolume());
   const auto plan = m_plan.get(m_segments.result(), hasVoxels, materials, r.materialChanges,
                                isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result());
-  const auto weights = m_labelWeights.get(m_segments.result(), plan->parts, m_skin.result(),
+  const auto weights = m_labelWeights.get(currentSegments(), plan->parts, m_skin.result(),
                                           r.focusStyle.shaping.smoothing, volume().grid);
   const auto transfer = m_transfer.result();
   const auto tint = m_tint.get(plan, weights, transfer->function.g);
@@ -147,8 +151,9 @@ void PreparedScene::makeTint(const std::string& name) {
 StageSeconds PreparedScene::seconds() const {
   const ClipResult unused, &clip = m_clip.isUpdated() ? *m_clip : unused; // unused: 0 seconds
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
-                  m_segments.seconds() + m_focus.seconds() + m_sceneTransfer.seconds() +
-                  m_hasVoxels.seconds() + m_content.seconds() + m_transfer.seconds(),
+                  m_segments.seconds() + m_trimmed.seconds() + m_focus.seconds() +
+                  m_sceneTransfer.seconds() + m_hasVoxels.seconds() + m_content.seconds() +
+                  m_transfer.seconds(),
           .smoothing = m_smoothed.seconds() + m_islands.seconds(),
           .materials = m_materials.seconds() + m_plan.seconds() + m_skin.seconds() +
                        m_labelWeights.seconds() + m_tint.seconds() + m_interfaces.seconds() +
@@ -191,6 +196,12 @@ std::vector<std::string> PreparedScene::choices() const {
     facts.push_back("lights: " + (r.lights.starts_with('{') ? "inline JSON" : r.lights));
   if (m_segments.result() && !m_segments->segmentation.namesSource().empty())
     facts.push_back("names of segments: " + m_segments->segmentation.namesSource());
+  for (const SegmentMargin& margin : margins())
+    facts.push_back(margin.isApplied
+                        ? concat("margin of ", margin.segment, ": ", toString(margin.mean, 2),
+                                 " mm, p95 ", toString(margin.p95, 2), " mm, removes ",
+                                 toString(margin.volume / 1000.0, 3), " ml of other tissue")
+                        : concat("margin of ", margin.segment, ": none, not one tissue"));
   if (m_focus->mask && m_focus->mask->smoothing > 0.0)
     facts.push_back(concat("segments smoothed by ", toString(m_focus->mask->smoothing, 3), " mm"));
   if (tint()) {

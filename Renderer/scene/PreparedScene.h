@@ -67,6 +67,10 @@ public:
   /// Clip with its measures, and the depth of the focus.
   const ClipResult& clipResult() const { return *m_clip; }
   const MinMaxGrid& minMaxGrid() const { return *m_minMaxGrid; }
+  /// Margins of the focus's segments; empty: not requested, or not CT.
+  std::vector<SegmentMargin> margins() const {
+    return m_trimmed.result() ? m_trimmed->margins : std::vector<SegmentMargin>();
+  }
   /// Null unless the request includes features.
   const FeatureBuffers* features() const { return m_features.result().get(); }
   StageSeconds seconds() const;
@@ -89,6 +93,11 @@ private:
   /// Smooths the volume if the request says so. Returns currentVolume().
   VolumeHandle smooth();
   VolumeHandle currentVolume() const;
+  /// Segments with their margins.
+  Handle<SegmentsInput> currentSegments() const {
+    return m_trimmed.result() ? Handle<SegmentsInput>(m_trimmed.result(), &m_trimmed->input)
+                              : m_segments.result();
+  }
   const Handle<Tint>& currentTint() const {
     return m_adjustedTint.result() ? m_adjustedTint.result() : m_tint.result();
   }
@@ -99,10 +108,10 @@ private:
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
-                    s.m_focus, s.m_sceneTransfer, s.m_hasVoxels, s.m_content, s.m_transfer,
-                    s.m_smoothed, s.m_islands, s.m_materials, s.m_skin, s.m_plan, s.m_labelWeights,
-                    s.m_tint, s.m_interfaces, s.m_tintContrast, s.m_adjustedTint, s.m_mixture,
-                    s.m_focusWarnings, s.m_view, s.m_minMaxGrid, s.m_rawMinMaxGrid,
+                    s.m_trimmed, s.m_focus, s.m_sceneTransfer, s.m_hasVoxels, s.m_content,
+                    s.m_transfer, s.m_smoothed, s.m_islands, s.m_materials, s.m_skin, s.m_plan,
+                    s.m_labelWeights, s.m_tint, s.m_interfaces, s.m_tintContrast, s.m_adjustedTint,
+                    s.m_mixture, s.m_focusWarnings, s.m_view, s.m_minMaxGrid, s.m_rawMinMaxGrid,
                     s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
                     s.m_majorants, s.m_features);
   }
@@ -114,6 +123,7 @@ private:
   CachedStage<&Input::volume> m_volume;
   CachedStage<&Input::settings> m_settings;
   CachedStage<&Input::segments> m_segments; ///< unused without a focus or materials
+  CachedStage<&trimSegments> m_trimmed;     ///< unused without organ margins
   CachedStage<&makeFocus> m_focus;
   CachedStage<&Input::transfer> m_sceneTransfer; ///< unused with --transfer
   CachedStage<&findNonEmpty> m_hasVoxels;        ///< unused without segments

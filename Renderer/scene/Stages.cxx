@@ -4,6 +4,7 @@
 #include "base/TextStream.h"
 #include "clip/surface/SteadySurface.h"
 #include "files/appearance/LightReader.h"
+#include "model/masks/OrganMargin.h"
 #include "model/masks/OuterLayer.h"
 #include "scene/Defaults.h"
 
@@ -182,6 +183,26 @@ NamedLights makeLights(const std::string& name, const std::optional<Rgb>& enviro
   }
   named.lights.emplace_back(replacement);
   return named;
+}
+
+TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
+                             const Handle<std::vector<bool>>& hasVoxels,
+                             const std::vector<std::string>& names, const VolumeHandle& volume) {
+  TrimmedSegments trimmed{*segments, {}};
+  const Segmentation& original = segments->segmentation;
+  for (const std::string& name : names) {
+    const std::size_t number = original.find(name);
+    if (!(*hasVoxels)[number])
+      continue;
+    const SegmentInfo& segment = original.segments()[number];
+    const OrganMargin margin =
+        findOrganMargin(original.makeMask({segment}, volume->volume.grid), volume->volume);
+    if (margin.isApplied)
+      trimmed.input.segmentation.restrictSegment(segment, margin.kept);
+    trimmed.margins.push_back(
+        {segment.name, margin.isApplied, margin.volume, margin.mean, margin.p95});
+  }
+  return trimmed;
 }
 
 FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<std::string>& names,

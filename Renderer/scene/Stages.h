@@ -31,6 +31,22 @@ using TintInterfaces = std::vector<ComponentInterface>;
 NamedLights makeLights(const std::string& name, const std::optional<Rgb>& environment,
                        const std::optional<std::filesystem::path>& environmentMap);
 
+/// Margin of a segment, as in OrganMargin.
+struct SegmentMargin {
+  std::string segment; ///< its name
+  bool isApplied;
+  double volume, mean, p95;
+};
+struct TrimmedSegments {
+  SegmentsInput input;                ///< with the margins
+  std::vector<SegmentMargin> margins; ///< in the order of the names
+};
+/// Removes what belongs to other tissue from the segments `names` (OrganMargin.h). `hasVoxels`:
+/// from findNonEmpty(). The volume must be CT. Throws Error (input) for unknown names.
+TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
+                             const Handle<std::vector<bool>>& hasVoxels,
+                             const std::vector<std::string>& names, const VolumeHandle& volume);
+
 /// Mask of the segments `names` on the volume's grid; `segments` is null only if `names` is empty.
 FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<std::string>& names,
                      const MaskShaping& shaping, const Grid& volume);

@@ -4,13 +4,14 @@
 // as the suite requires. An entry's "integrator" is the one in which it shows: "simd" (the
 // default), "scalar" or "both". Entries with "shows" affect no mean of these images; they must show
 // elsewhere: "estimated error", in the images' standard errors (ErrorRatio.h); "request", in which
-// volume a request renders.
+// volume a request renders; "margin", in voxels that an organ gains (OrganMargin.h).
 
 #include "Comparison.h"
 #include "ErrorRatio.h"
 #include "Mutations/Mutant.h"
 #include "RunSettings.h"
 #include "model/filtering/SmoothingRequest.h"
+#include "model/masks/OrganMargin.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -104,14 +105,34 @@ bool areRequestsRight() {
          isSmoothed(given, measurement) && !isSmoothed({}, shown);
 }
 
-/// Tests the mutations that show in which volume a request renders.
-void testRequests(std::vector<Mutation>& mutations) {
-  EXPECT_TRUE(areRequestsRight()) << "without a mutation";
+/// True if the margin of a ball that reaches into air contains no voxel outside the ball.
+bool doesMarginOnlyRemove() {
+  constexpr std::int64_t edge = 44;
+  Affine toCenter = Affine::Identity();
+  toCenter.translate(Vec3::Constant(-0.5 * (edge - 1)));
+  const Grid grid(Size3::Constant(edge), toCenter);
+  Mask ball{grid, {}};
+  LargeArray<std::int16_t> voxels;
+  for (std::int64_t i = 0; i < grid.voxelCount(); ++i) {
+    const Size3 voxel(i % edge, i / edge % edge, i / (edge * edge));
+    const double radius = (grid.indexToWorld * Vec3(voxel.cast<double>())).norm();
+    ball.voxels.push_back(radius < 18.0 ? 1 : 0);
+    voxels.push_back(static_cast<std::int16_t>(radius < 16.0 ? 60 : -900));
+  }
+  ball.count = std::ranges::count(ball.voxels, std::uint8_t{1});
+  const OrganMargin margin =
+      findOrganMargin(ball, {.grid = grid, .voxels = voxels, .name = "", .warnings = {}});
+  EXPECT_TRUE(margin.isApplied);
+  return std::ranges::equal(margin.kept.voxels, ball.voxels, std::less_equal());
+}
+
+/// Tests the mutations that show in a property of a function, which `holds` without them.
+void testProperty(std::vector<Mutation>& mutations, const std::string& shows, bool (*holds)()) {
+  EXPECT_TRUE(holds()) << shows << ", without a mutation";
   for (Mutation& mutation : mutations)
-    if (mutation.shows == "request") {
+    if (mutation.shows == shows) {
       const ActiveMutation active(mutation.name);
-      if (!areRequestsRight())
-        mutation.foundIn = "the requests";
+      mutation.foundIn = holds() ? "" : "the " + shows;
     }
 }
 
@@ -159,7 +180,8 @@ TEST(Mutations, AreAllFound) {
   std::vector<Mutation> mutations = readMutations();
   ASSERT_FALSE(mutations.empty());
   testEstimatedErrors(mutations, significanceLevel(count));
-  testRequests(mutations);
+  testProperty(mutations, "request", areRequestsRight);
+  testProperty(mutations, "margin", doesMarginOnlyRemove);
   for (const Combination& c : makeCombinations(count)) {
     std::vector<Mutation*> pending;
     for (Mutation& mutation : mutations)

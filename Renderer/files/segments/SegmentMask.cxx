@@ -185,6 +185,12 @@ private:
   std::vector<LabelValueSet<Label>> m_values; ///< selected values of each layer
 };
 
+/// True if the voxel of the mask's grid is inside the grid and the mask.
+bool containsVoxel(const Mask& mask, const Size3& voxel) {
+  return (voxel.array() >= 0).all() && (voxel.array() < mask.grid.size.array()).all() &&
+         mask.voxels[linearIndex(voxel, mask.grid.size)] >= mask.threshold();
+}
+
 // ---- statistics
 
 struct ValueStatistics {
@@ -316,6 +322,23 @@ std::vector<SegmentStatistics> Segmentation::statistics() const {
       statistics.back().bounds = computeWorldBounds(m_grid, value.extent);
   }
   return statistics;
+}
+
+void Segmentation::restrictSegment(const SegmentInfo& segment, const Mask& mask) {
+  const Vec3 place = m_grid.worldToIndex * mask.grid.indexToWorld.translation();
+  const Size3 origin = place.array().round().cast<std::int64_t>();
+  const auto restrict = [&](auto& labels) {
+    tbb::parallel_for(std::int64_t{0}, m_grid.size.z(), [&](std::int64_t z) {
+      for (std::int64_t y = 0; y < m_grid.size.y(); ++y)
+        for (std::int64_t x = 0; x < m_grid.size.x(); ++x) {
+          const std::size_t voxel = linearIndex({x, y, z}, m_grid.size);
+          auto& label = labels[voxel * m_layerCount + segment.layer];
+          if (label == segment.labelValue && !containsVoxel(mask, Size3(x, y, z) - origin))
+            label = 0;
+        }
+    });
+  };
+  std::visit(restrict, m_labels);
 }
 
 Mask Segmentation::makeFocusMask(const std::vector<std::string>& selectors, const Grid& volume,

@@ -70,6 +70,9 @@ public:
   /// Statistics of each segment, in order; one pass over the labels per layer.
   std::vector<SegmentStatistics> statistics() const;
 
+  /// Removes a segment's voxels that a binary mask on this label map's lattice does not contain.
+  void restrictSegment(const SegmentInfo& segment, const Mask& mask);
+
   /// Index in segments() of the segment whose id, else name, else label value is `selector`. Throws
   /// Error (input) if none or several match.
   std::size_t find(const std::string& selector) const;

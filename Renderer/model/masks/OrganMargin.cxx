@@ -1,0 +1,309 @@
+#include "model/masks/OrganMargin.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+
+namespace fenestra {
+namespace {
+
+constexpr double deep = 8.0;             ///< mm below the surface, where voxels are surely organ
+constexpr std::size_t fewestDeep = 500;  ///< voxels, for a robust standard deviation
+constexpr double maxDeviation = 60.0;    ///< HU, of one tissue
+constexpr float maxDepth = 6.0F;         ///< mm below the surface, of removed voxels
+constexpr double maxRemoved = 1.0 / 3.0; ///< fraction of the voxels; more: not this organ's label
+constexpr double deviations = 3.5;       ///< robust standard deviations that belong to the tissue
+constexpr double leastDifference = 25.0; ///< HU; differences within an organ
+constexpr double tested = 1.0;           ///< mm below the new surface, where it must be organ
+/// Lesions: radius, mm, of a ball that fits in, and the rim around it.
+constexpr double lesionRadius = 1.25, fatRadius = 4.0, lesionRim = 2.5;
+constexpr float leastSoft = -30.0F;    ///< HU; fat, lung and air are below
+constexpr double lesionFraction = 0.6; ///< of the range: partial volume around a lesion
+constexpr double maxMoved = 12.0;      ///< mm, measured
+
+using Marks = std::vector<std::uint8_t>; ///< 1: voxels of a set
+
+/// Calls visit(y, z, index of the first voxel) for each row, in parallel.
+template <typename Visitor>
+void forEachRow(const Size3& size, const Visitor& visit) {
+  tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      visit(y, z, linearIndex({0, y, z}, size));
+  });
+}
+
+/// Calls visit(voxel, index) for each voxel.
+template <typename Visitor>
+void forEachVoxel(const Size3& size, const Visitor& visit) {
+  std::size_t i = 0;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x)
+        visit(Size3(x, y, z), i++);
+}
+
+/// Calls visit(neighbor, its index, axis) for the six voxels with a common face.
+template <typename Visitor>
+void forEachNeighbor(const Size3& voxel, const Size3& size, const Visitor& visit) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int step : {-1, 1}) {
+      const Size3 next = voxel + step * Size3::Unit(axis);
+      if (next[axis] >= 0 && next[axis] < size[axis])
+        visit(next, linearIndex(next, size), axis);
+    }
+}
+
+/// Squared distances along rows to the nearest marked voxel, limited to `most`.
+std::vector<float> computeRowDistances(const Marks& marks, const Grid& grid, float most) {
+  const auto step = static_cast<float>(grid.spacing().x());
+  const auto count = static_cast<std::size_t>(grid.size.x());
+  std::vector<float> squared(marks.size());
+  forEachRow(grid.size, [&](std::int64_t, std::int64_t, std::size_t row) {
+    float away = most;
+    for (std::size_t i = row; i < row + count; ++i)
+      squared[i] = away = marks[i] ? 0.0F : std::min(most, away + step);
+    away = most;
+    for (std::size_t i = row + count; i-- > row;) {
+      away = marks[i] ? 0.0F : std::min(most, away + step);
+      const float least = std::min(squared[i], away);
+      squared[i] = least * least;
+    }
+  });
+  return squared;
+}
+
+/// Distances, mm, from each voxel to the nearest marked one, limited to `most`.
+std::vector<float> computeDistances(const Marks& marks, const Grid& grid, double most) {
+  const Size3& size = grid.size;
+  std::vector<float> squared = computeRowDistances(marks, grid, static_cast<float>(most));
+  for (const int axis : {1, 2}) {
+    const auto range = static_cast<std::int64_t>(most / grid.spacing()[axis]);
+    const auto edge = static_cast<float>(grid.spacing()[axis]);
+    const std::int64_t stride = axis == 1 ? size.x() : size.x() * size.y();
+    std::vector<float> result(squared.size());
+    forEachRow(size, [&](std::int64_t y, std::int64_t z, std::size_t row) {
+      const std::int64_t at = axis == 1 ? y : z;
+      float* const to = &result[row];
+      std::copy_n(&squared[row], size.x(), to);
+      const std::int64_t end = std::min(range, size[axis] - 1 - at);
+      for (std::int64_t step = std::max(-range, -at); step <= end; ++step) {
+        const float* const from = &squared[row] + step * stride;
+        const float across = edge * edge * static_cast<float>(step * step);
+        std::transform(to, to + size.x(), from, to,
+                       [across](float a, float b) { return std::min(a, b + across); });
+      }
+    });
+    squared = std::move(result);
+  }
+  for (float& value : squared)
+    value = std::sqrt(value);
+  return squared;
+}
+
+/// Volume at the voxels of another grid.
+std::vector<float> resample(const Volume& volume, const Grid& grid) {
+  std::vector<float> result(static_cast<std::size_t>(grid.voxelCount()));
+  const Affine toVolume = volume.grid.worldToIndex * grid.indexToWorld;
+  const auto fill = [&](const auto& voxels) {
+    const Field field(volume.grid, voxels);
+    forEachRow(grid.size, [&](std::int64_t y, std::int64_t z, std::size_t row) {
+      for (std::int64_t x = 0; x < grid.size.x(); ++x)
+        result[row + static_cast<std::size_t>(x)] =
+            static_cast<float>(field.value(toVolume * Size3(x, y, z).cast<double>()));
+    });
+  };
+  std::visit(fill, volume.voxels);
+  return result;
+}
+
+/// Median of the up to 27 values around a voxel.
+float computeLocalMedian(const std::vector<float>& values, const Size3& voxel, const Size3& size) {
+  std::array<float, 27> near{};
+  const Size3 first = (voxel.array() - 1).max(0), last = (voxel.array() + 1).min(size.array() - 1);
+  auto end = near.begin();
+  for (std::int64_t z = first.z(); z <= last.z(); ++z)
+    for (std::int64_t y = first.y(); y <= last.y(); ++y)
+      for (std::int64_t x = first.x(); x <= last.x(); ++x)
+        *end++ = values[linearIndex({x, y, z}, size)];
+  const auto middle = near.begin() + (end - near.begin()) / 2;
+  std::nth_element(near.begin(), middle, end);
+  return *middle;
+}
+
+double computeMedian(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return static_cast<double>(*middle);
+}
+
+/// Values of one tissue: within `difference` of the median.
+struct TissueRange {
+  double median = 0.0, deviation = 0.0, difference = 0.0;
+
+  /// `values` must not be empty.
+  explicit TissueRange(std::vector<float> values) : median(computeMedian(values)) {
+    for (float& value : values)
+      value = std::abs(value - static_cast<float>(median));
+    deviation = 1.4826 * computeMedian(values);
+    difference = std::max(leastDifference, deviations * deviation);
+  }
+
+  /// `fraction`: of the range.
+  bool contains(float value, double fraction = 1.0) const {
+    return std::abs(static_cast<double>(value) - median) <= fraction * difference;
+  }
+};
+
+/// Finds the voxels to remove.
+class OrganTrimmer {
+public:
+  OrganTrimmer(const Mask& segment, const Volume& volume)
+      : m_grid(segment.grid),
+        m_inside(segment.voxels),
+        m_isBeside(segment.voxels.size()),
+        m_values(resample(volume, m_grid)),
+        m_medians(segment.voxels.size()) {
+    Marks outside(m_inside.size());
+    std::ranges::transform(m_inside, outside.begin(), [](std::uint8_t voxel) { return !voxel; });
+    m_depth = computeDistances(outside, m_grid, deep);
+    forEachVoxel(m_grid.size, [&](const Size3& voxel, std::size_t i) {
+      if (!m_inside[i])
+        forEachNeighbor(voxel, m_grid.size, [&](const Size3&, std::size_t next, int) {
+          m_isBeside[i] |= m_inside[next];
+        });
+    });
+    forEachRow(m_grid.size, [&](std::int64_t y, std::int64_t z, std::size_t row) {
+      for (std::int64_t x = 0; x < m_grid.size.x(); ++x)
+        if (const std::size_t i = row + static_cast<std::size_t>(x); m_inside[i] || m_isBeside[i])
+          m_medians[i] = computeLocalMedian(m_values, {x, y, z}, m_grid.size);
+    });
+  }
+
+  /// Marks of the removed voxels; empty: not one tissue.
+  Marks findRemoved() const {
+    const std::vector<float> deepValues = selectDeep(m_values);
+    if (deepValues.size() < fewestDeep)
+      return {};
+    const TissueRange values(deepValues), medians(selectDeep(m_medians));
+    if (!(values.deviation <= maxDeviation))
+      return {};
+    const Marks lesions = findLesions(values, medians);
+    Marks removed(m_inside.size());
+    std::vector<Size3> front;
+    const auto removeBeside = [&](const Size3& from, std::size_t i) {
+      forEachNeighbor(from, m_grid.size, [&](const Size3& voxel, std::size_t next, int axis) {
+        if (!m_inside[next] || removed[next] || lesions[next] || m_depth[next] > maxDepth ||
+            isOrgan(next, i, axis, values, medians))
+          return;
+        removed[next] = 1;
+        front.push_back(voxel);
+      });
+    };
+    forEachVoxel(m_grid.size, [&](const Size3& voxel, std::size_t i) {
+      if (m_isBeside[i])
+        removeBeside(voxel, i);
+    });
+    while (!front.empty()) {
+      const Size3 voxel = front.back();
+      front.pop_back();
+      removeBeside(voxel, linearIndex(voxel, m_grid.size));
+    }
+    return removed;
+  }
+
+  /// Distances, mm, from the segment's surface voxels to the nearest voxel that is kept; sorted.
+  std::vector<float> measureMovement(const Marks& kept) const {
+    const std::vector<float> distances = computeDistances(kept, m_grid, maxMoved);
+    std::vector<float> moved;
+    forEachVoxel(m_grid.size, [&](const Size3& voxel, std::size_t i) {
+      bool isSurface = false;
+      if (m_inside[i])
+        forEachNeighbor(voxel, m_grid.size,
+                        [&](const Size3&, std::size_t next, int) { isSurface |= !m_inside[next]; });
+      if (isSurface)
+        moved.push_back(distances[i]);
+    });
+    std::ranges::sort(moved);
+    return moved;
+  }
+
+private:
+  std::vector<float> selectDeep(const std::vector<float>& from) const {
+    std::vector<float> selected;
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (m_inside[i] && m_depth[i] >= static_cast<float>(deep))
+        selected.push_back(from[i]);
+    return selected;
+  }
+
+  /// True if the volume is of the organ `tested` mm below the face between a voxel and `beyond`.
+  /// Single voxels differ from it if there is little noise, medians if there is much.
+  bool isOrgan(std::size_t i, std::size_t beyond, int axis, const TissueRange& values,
+               const TissueRange& medians) const {
+    const auto weight = static_cast<float>(std::max(0.0, 0.5 - tested / m_grid.spacing()[axis]));
+    const auto isIn = [&](const std::vector<float>& from, const TissueRange& range) {
+      return range.contains(from[i] + weight * (from[beyond] - from[i]));
+    };
+    return isIn(m_values, values) && isIn(m_medians, medians);
+  }
+
+  /// Bodies of other tissue, in contrast to sheets: opening of it by a ball, with a rim.
+  Marks findLesions(const TissueRange& values, const TissueRange& medians) const {
+    Marks lesions(m_inside.size());
+    const auto add = [&](double radius, const auto& isOther) {
+      Marks rest(m_inside.size());
+      for (std::size_t i = 0; i < rest.size(); ++i)
+        rest[i] = !m_inside[i] || !isOther(i);
+      const Vec3 spacing = m_grid.spacing();
+      const double edge = spacing.maxCoeff();
+      const double middle = spacing.sum() - edge - spacing.minCoeff();
+      // Between voxel centers: wider than partial volume of two voxels, also diagonally.
+      const double reach = std::max({radius + 0.5 * edge, 1.01 * edge, 1.45 * middle});
+      Marks cores(rest.size());
+      const std::vector<float> toRest = computeDistances(rest, m_grid, reach + edge);
+      for (std::size_t i = 0; i < rest.size(); ++i)
+        cores[i] = toRest[i] > static_cast<float>(reach);
+      const std::vector<float> toCores = computeDistances(cores, m_grid, reach + lesionRim + edge);
+      for (std::size_t i = 0; i < rest.size(); ++i)
+        lesions[i] |= toCores[i] <= static_cast<float>(reach + lesionRim);
+    };
+    add(lesionRadius, [&](std::size_t i) {
+      return m_medians[i] > leastSoft && !medians.contains(m_medians[i], lesionFraction);
+    });
+    add(fatRadius, [&](std::size_t i) {
+      return !medians.contains(m_medians[i]) || !values.contains(m_values[i]);
+    });
+    return lesions;
+  }
+
+  const Grid& m_grid;
+  const Marks& m_inside;
+  Marks m_isBeside; ///< outside, with a face in common with the segment
+  std::vector<float> m_values, m_medians, m_depth;
+};
+
+} // namespace
+
+OrganMargin findOrganMargin(const Mask& segment, const Volume& volume) {
+  const OrganTrimmer trimmer(segment, volume);
+  const Marks removed = trimmer.findRemoved();
+  OrganMargin margin{.isApplied = false, .kept = segment};
+  const auto count = std::ranges::count(removed, std::uint8_t{1});
+  if (removed.empty() ||
+      static_cast<double>(count) > maxRemoved * static_cast<double>(segment.count))
+    return margin;
+  margin.isApplied = true;
+  for (std::size_t i = 0; i < removed.size(); ++i)
+    margin.kept.voxels[i] = segment.voxels[i] && !removed[i];
+  margin.kept.count -= count;
+  margin.volume = static_cast<double>(count) * segment.grid.spacing().prod();
+  const std::vector<float> moved = trimmer.measureMovement(margin.kept.voxels);
+  for (const float distance : moved)
+    margin.mean += static_cast<double>(distance) / static_cast<double>(moved.size());
+  if (!moved.empty())
+    margin.p95 = static_cast<double>(moved[moved.size() * 95 / 100]);
+  return margin;
+}
+
+} // namespace fenestra

@@ -1,0 +1,232 @@
+// Organ margins, on an ellipsoid between fat and lung with partial volume, noise and lesions.
+
+#include "base/Random.h"
+#include "model/masks/OrganMargin.h"
+#include "scene/PreparedScene.h"
+
+#include "ClippingTesting.h"
+#include "MedicalFiles.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::OrganMarginTests {
+using namespace testing_clipping;
+
+namespace {
+
+constexpr double organ = 60.0, fat = -100.0, lung = -850.0; // HU
+const Vec3 radii(38.0, 30.0, 32.0);                         // mm
+
+/// Signed distance to the ellipsoid's surface, approximately, mm; negative inside.
+double computeDistance(const Vec3& p) {
+  const Vec3 scaled = p.cwiseQuotient(radii);
+  return (scaled.norm() - 1.0) * scaled.norm() / std::max(scaled.cwiseQuotient(radii).norm(), 1e-9);
+}
+
+/// Fraction of a voxel inside an edge at a signed distance, blurred by the scanner.
+double computeFraction(double distance) {
+  return 0.5 * std::erfc(distance / std::sqrt(2.0)); // standard deviation 1 mm
+}
+
+struct Lesion {
+  Vec3 center;
+  double diameter, value; ///< mm, HU
+
+  double distance(const Vec3& p) const { return (p - center).norm() - 0.5 * diameter; }
+};
+
+struct Phantom {
+  Mask label; ///< on the half x > 0 it reaches 1.5 mm too far
+  Volume volume;
+};
+
+/// `noise`: HU. The label includes what protrudes of the lesion.
+Phantom makePhantom(double noise, const std::optional<Lesion>& lesion = {}, double scale = 1.0) {
+  const Grid grid = makeCenteredGrid({62, 54, 56}, scale * Vec3(1.5, 1.5, 1.5));
+  Phantom phantom{makeMask(grid,
+                           [&](const Vec3& p) {
+                             return computeDistance(p / scale) < (p.x() > 0.0 ? 1.5 : 0.0) ||
+                                    (lesion && lesion->distance(p) < 0.0);
+                           }),
+                  {}};
+  phantom.volume.grid = grid;
+  Random random(7);
+  LargeArray<std::int16_t> voxels;
+  for (std::int64_t i = 0; i < grid.voxelCount(); ++i) {
+    const Size3 voxel(i % grid.size.x(), i / grid.size.x() % grid.size.y(),
+                      i / (grid.size.x() * grid.size.y()));
+    const Vec3 p = grid.indexToWorld * voxel.cast<double>();
+    const double inside = computeFraction(computeDistance(p / scale));
+    double value = inside * organ + (1.0 - inside) * (p.z() > 0.0 ? lung : fat);
+    if (lesion)
+      value += computeFraction(lesion->distance(p)) * (lesion->value - value);
+    double sum = -6.0; // of twelve uniform numbers: nearly normal
+    for (int k = 0; k < 12; ++k)
+      sum += random.uniform();
+    voxels.push_back(static_cast<std::int16_t>(std::lround(value + noise * sum)));
+  }
+  phantom.volume.voxels = std::move(voxels);
+  computeRange(phantom.volume);
+  return phantom;
+}
+
+/// Fraction of the voxels with a face on the mask's surface in which the organ is less than half.
+double computeForeignSurface(const Mask& mask) {
+  double foreign = 0.0, all = 0.0;
+  const Size3& size = mask.grid.size;
+  const std::array<std::int64_t, 3> steps = {1, size.x(), size.x() * size.y()};
+  for (std::int64_t i = 0; i < mask.grid.voxelCount(); ++i) {
+    const auto at = [&](std::int64_t j) { return mask.voxels[static_cast<std::size_t>(j)]; };
+    if (!at(i) ||
+        std::ranges::all_of(steps, [&](auto step) { return at(i - step) && at(i + step); }))
+      continue;
+    const Size3 voxel(i % size.x(), i / size.x() % size.y(), i / steps[2]);
+    foreign += computeDistance(mask.grid.indexToWorld * voxel.cast<double>()) > 0.0;
+    all += 1.0;
+  }
+  return foreign / all;
+}
+
+/// Fraction of a lesion's labeled voxels that the margin removes.
+double computeLoss(const Phantom& phantom, const Lesion& lesion) {
+  const OrganMargin margin = findOrganMargin(phantom.label, phantom.volume);
+  EXPECT_TRUE(margin.isApplied);
+  double lost = 0.0, all = 0.0;
+  const Mask body =
+      makeMask(phantom.label.grid, [&](const Vec3& p) { return lesion.distance(p) < 0.0; });
+  for (std::size_t i = 0; i < body.voxels.size(); ++i)
+    if (body.voxels[i] && phantom.label.voxels[i]) {
+      all += 1.0;
+      lost += !margin.kept.voxels[i];
+    }
+  return lost / all;
+}
+
+TEST(OrganMargin, RemovesOtherTissueAndNeverAdds) {
+  for (const double noise : {0.0, 10.0, 33.0}) {
+    const Phantom phantom = makePhantom(noise);
+    const OrganMargin margin = findOrganMargin(phantom.label, phantom.volume);
+    ASSERT_TRUE(margin.isApplied) << noise;
+    std::int64_t removed = 0;
+    for (std::size_t i = 0; i < phantom.label.voxels.size(); ++i) {
+      ASSERT_LE(margin.kept.voxels[i], phantom.label.voxels[i]);
+      removed += phantom.label.voxels[i] - margin.kept.voxels[i];
+    }
+    EXPECT_EQ(margin.kept.count, phantom.label.count - removed);
+    EXPECT_DOUBLE_EQ(margin.volume, static_cast<double>(removed) * 1.5 * 1.5 * 1.5);
+    EXPECT_GT(computeForeignSurface(phantom.label), 0.4);
+    EXPECT_LT(computeForeignSurface(margin.kept), 0.02) << noise;
+    EXPECT_GT(margin.mean, 0.5) << noise;
+    EXPECT_LT(margin.mean, 3.0) << noise;
+    EXPECT_GE(margin.p95, 1.5) << noise;
+    EXPECT_LT(margin.p95, 5.0) << noise;
+  }
+}
+
+/// Subcapsular metastases, cysts and calcifications lose at most 5 %.
+TEST(OrganMargin, PreservesLesions) {
+  const auto expectPreserved = [](double diameter, double depth, double value, double noise) {
+    for (const double side : {1.0, -1.0}) {
+      const Lesion lesion{{side * (radii.x() - depth), 0.0, -4.0}, diameter, value};
+      EXPECT_LE(computeLoss(makePhantom(noise, lesion), lesion), 0.05)
+          << diameter << " mm, center at depth " << depth << " mm, " << value << " HU, noise "
+          << noise << ", side " << side;
+    }
+  };
+  for (const double depth : {0.0, 5.0, 7.0})
+    for (const double noise : {10.0, 33.0})
+      for (const double value : {0.0, 400.0})
+        expectPreserved(10.0, depth, value, noise);
+  expectPreserved(10.0, 5.0, 20.0, 33.0); // as faint as what is still removed
+  expectPreserved(20.0, 10.0, 10.0, 33.0);
+}
+
+TEST(OrganMargin, IsNotAppliedToSmallOrMixedSegments) {
+  Phantom small = makePhantom(10.0, {}, 0.3);
+  EXPECT_FALSE(findOrganMargin(small.label, small.volume).isApplied) << "nothing is 8 mm deep";
+  EXPECT_EQ(findOrganMargin(small.label, small.volume).kept.voxels, small.label.voxels);
+  const Phantom mixed = makePhantom(90.0);
+  EXPECT_FALSE(findOrganMargin(mixed.label, mixed.volume).isApplied);
+  Phantom wrong = makePhantom(10.0); // a label with mostly another tissue near its surface
+  wrong.volume = makePhantom(10.0, {}, 0.8).volume;
+  wrong.volume.grid = wrong.label.grid;
+  EXPECT_TRUE(findOrganMargin(wrong.label, wrong.volume).kept.count >= wrong.label.count * 3 / 4);
+}
+
+/// Requests of the phantom in files.
+class OrganMarginScene : public ::testing::Test {
+protected:
+  OrganMarginScene() {
+    const Phantom phantom = makePhantom(10.0);
+    FileGeometry geometry;
+    for (int axis = 0; axis < 3; ++axis) {
+      geometry.size[static_cast<std::size_t>(axis)] =
+          static_cast<std::size_t>(phantom.label.grid.size[axis]);
+      geometry.spacing[static_cast<std::size_t>(axis)] = 1.5;
+    }
+    std::vector<std::int16_t> voxels(
+        std::get<LargeArray<std::int16_t>>(phantom.volume.voxels).begin(),
+        std::get<LargeArray<std::int16_t>>(phantom.volume.voxels).end());
+    voxels[0] = 900; // bone, as in CT
+    writeFile(folder / "ct.nrrd", voxels, geometry);
+    for (std::int16_t& voxel : voxels)
+      voxel = static_cast<std::int16_t>(voxel + 2000);
+    writeFile(folder / "mr.nrrd", voxels, geometry);
+    writeFile(folder / "labels.nrrd", phantom.label.voxels, geometry);
+    count = phantom.label.count;
+    request.input = folder / "ct.nrrd";
+    request.segmentation = folder / "labels.nrrd";
+    request.focus = {"1"};
+    request.materials = "library";
+    request.materialChanges = {"1: color=#ff0000"};
+    request.focusStyle.shaping.smoothing = 0.0;
+    request.focusStyle.hasOrganMargin = true;
+    request.width = request.height = 8;
+  }
+
+  TemporaryFolder folder;
+  RenderRequest request;
+  std::int64_t count = 0;
+};
+
+/// Without smoothing, the tint covers exactly the voxels of the focus.
+TEST_F(OrganMarginScene, TrimsFocusAndTint) {
+  const PreparedScene trimmed(request);
+  ASSERT_EQ(trimmed.margins().size(), 1U);
+  EXPECT_TRUE(trimmed.margins()[0].isApplied);
+  EXPECT_LT(trimmed.focus()->count, count);
+  EXPECT_DOUBLE_EQ(trimmed.margins()[0].volume,
+                   static_cast<double>(count - trimmed.focus()->count) * 1.5 * 1.5 * 1.5);
+  const Grid& grid = trimmed.focus()->grid;
+  ASSERT_TRUE(trimmed.tint());
+  const LabelWeights& weights = *trimmed.tint()->weights;
+  std::int64_t differences = 0;
+  for (std::int64_t i = 0; i < grid.voxelCount(); ++i) {
+    const Size3 voxel(i % grid.size.x(), i / grid.size.x() % grid.size.y(),
+                      i / (grid.size.x() * grid.size.y()));
+    const Vec3 world = grid.indexToWorld * voxel.cast<double>();
+    double tinted = 0.0;
+    weights.forEachWeight(
+        weights.grid().worldToIndex * world,
+        [&](std::uint8_t component, double weight) { tinted += component == 0 ? 0.0 : weight; });
+    differences +=
+        std::abs(tinted -
+                 static_cast<double>(trimmed.focus()->voxels[static_cast<std::size_t>(i)])) > 1e-6;
+  }
+  EXPECT_EQ(differences, 0);
+
+  request.focusStyle.hasOrganMargin = false;
+  const PreparedScene whole = trimmed.withRequest(request);
+  EXPECT_EQ(whole.focus()->count, count);
+  EXPECT_TRUE(whole.margins().empty());
+}
+
+TEST_F(OrganMarginScene, OnlyForCt) {
+  request.input = folder / "mr.nrrd";
+  const PreparedScene scene(request);
+  EXPECT_TRUE(scene.margins().empty());
+  EXPECT_EQ(scene.focus()->count, count);
+}
+
+} // namespace
+} // namespace fenestra::OrganMarginTests
