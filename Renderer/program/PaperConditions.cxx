@@ -18,6 +18,8 @@ constexpr Condition conditions[] = {
     {"label-smoothing", "0", Needs::focus},      {"margin", "0", Needs::focus},
     {"materials", "none", Needs::nothing},       {"context-saturation", "1", Needs::focus},
     {"context-density", "1", Needs::focus},
+    {"gradient", "central", Needs::nothing},
+    {"volume-smoothing", "off", Needs::nothing},
 };
 
 bool hasWord(const OptionValues& values, const std::string& name,

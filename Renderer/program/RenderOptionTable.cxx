@@ -76,9 +76,9 @@ struct RenderOptionTable {
       {"paper", "", sceneGroup, describePaperConditions(), ValueSpec::notInPanel()},
       {"margin", "MM,...", clipGroup,
        "Grows the focus by this distance, or shrinks it (negative): one value for all its "
-       "segments, or one per segment; auto: in CT, removes what is another tissue [0]",
-       ValueSpec::text().withNamedValues({"auto"}).bind(focus, readMargins), OverrideGroup::focus,
-       Requires::focus},
+       "segments, or one per segment; auto: in CT, removes what is another tissue",
+       ValueSpec::text().withNamedValues({"auto"}).withDefault("auto").bind(focus, readMargins),
+       OverrideGroup::focus, Requires::focus},
       {"label-smoothing", "MM", clipGroup,
        "Smooths the segments by a Gaussian of this standard deviation; thick slices are "
        "interpolated first; auto: 0.6 of the longest voxel edge, except for thin parts",
@@ -199,7 +199,7 @@ struct RenderOptionTable {
        "output is .png or .tif",
        ValueSpec::text()
            .bind(options.smoothing, readVolumeSmoothing)
-           .withDefault("off")
+           .withDefault("auto")
            .withNamedValues({"auto", "off"})},
       {"materials", "none|auto|library|FILE", appearanceGroup,
        "Segment colors by material: none, library (Fenestra's), a .json file that extends the "

@@ -25,8 +25,9 @@ struct RenderOptions {
   std::vector<std::filesystem::path> outputs; ///< at least one, except for a shard
   NameOrigin outputNaming = NameOrigin::user;
   LayerSet layers = allLayers;
-  Display display = {};            ///< of .png and .tif
-  SmoothingRequest smoothing = {}; ///< as given; scene.smoothing is resolved
+  Display display = {}; ///< of .png and .tif
+  SmoothingRequest smoothing = {
+      SmoothingRequest::Kind::automatic}; ///< as given; scene.smoothing is resolved
   Denoise denoise = Denoise::automatic;
   NoiseTarget noiseTarget = NoiseTarget::automatic;  ///< raw or filtered after makeRenderOptions
   std::optional<std::filesystem::path> surface = {}; ///< only with a depth clip

@@ -52,7 +52,7 @@ struct ClipRequest {
 struct FocusRequest {
   MaskShaping shaping = {.smoothing = std::nullopt};
   /// Applies an OrganMargin to each segment of the focus if the volume seems to be CT.
-  bool hasOrganMargin = false;
+  bool hasOrganMargin = true;
   double contextExtinction = 1.0; ///< factor of the extinction outside the focus, 0 to 1
   /// Factor of the color saturation outside the focus, 0 to 1. By default 1 with materials, else
   /// chosen for contrast (Contrast.h).

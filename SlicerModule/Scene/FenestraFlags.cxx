@@ -66,7 +66,7 @@ bool matchesKind(FlagKind kind, const std::string& value) {
     return areNumbers(value, true);
   case FlagKind::size:
     return isSize(value);
-  case FlagKind::color:
+  case FlagKind::wordOrNumbers:
     return isWord(value) || areNumbers(value, true);
   case FlagKind::text:
   case FlagKind::textList:
@@ -89,7 +89,7 @@ const std::vector<Flag>& flags() {
   using Kind = FlagKind;
   static const std::vector<Flag> all = {{"focus", Kind::text},
                                         {"preset", Kind::resource},
-                                        {"margin", Kind::numbers},
+                                        {"margin", Kind::wordOrNumbers},
                                         {"labelsmoothing", Kind::numberOrAuto},
                                         {"clip", Kind::word},
                                         {"boundary", Kind::word},
@@ -113,13 +113,16 @@ const std::vector<Flag>& flags() {
                                         {"transfer", Kind::resource},
                                         {"shift", Kind::number},
                                         {"density", Kind::number},
+                                        {"gradient", Kind::word},
+                                        {"volumesmoothing", Kind::wordOrNumbers},
                                         {"materials", Kind::resource},
                                         {"material", Kind::textList},
                                         {"lights", Kind::resource},
                                         {"environment", Kind::resource},
-                                        {"background", Kind::color},
+                                        {"background", Kind::wordOrNumbers},
                                         {"exposure", Kind::number},
                                         {"tone", Kind::word},
+                                        {"annotate", Kind::text},
                                         {"size", Kind::size},
                                         {"samples", Kind::integer},
                                         {"seconds", Kind::number},

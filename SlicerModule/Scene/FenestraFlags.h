@@ -18,7 +18,7 @@ enum class FlagKind {
   numberOrAuto, ///< a finite number or the word auto
   numbers,      ///< finite numbers, separated by commas
   size,         ///< two integers, WxH
-  color,        ///< a word or numbers
+  wordOrNumbers,
   resource      ///< a name, numbers, a JSON text, or a file name
 };
 
