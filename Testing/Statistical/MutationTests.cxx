@@ -111,7 +111,8 @@ bool doesMarginOnlyRemove() {
   Affine toCenter = Affine::Identity();
   toCenter.translate(Vec3::Constant(-0.5 * (edge - 1)));
   const Grid grid(Size3::Constant(edge), toCenter);
-  Mask ball{grid, {}};
+  Mask ball;
+  ball.grid = grid;
   LargeArray<std::int16_t> voxels;
   for (std::int64_t i = 0; i < grid.voxelCount(); ++i) {
     const Size3 voxel(i % edge, i / edge % edge, i / (edge * edge));

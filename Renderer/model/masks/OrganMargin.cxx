@@ -186,7 +186,7 @@ public:
     if (deepValues.size() < fewestDeep)
       return {};
     const TissueRange values(deepValues), medians(selectDeep(m_medians));
-    if (!(values.deviation <= maxDeviation))
+    if (!(values.deviation <= maxDeviation && values.median > static_cast<double>(leastSoft)))
       return {};
     const Marks lesions = findLesions(values, medians);
     Marks removed(m_inside.size());
