@@ -21,8 +21,9 @@ struct OrganMargin {
 /// removes, from the surface inward, what differs by more than 3.5 robust standard deviations (at
 /// least 25 HU). Not removed, with a rim of 2.5 mm, are bodies: soft tissue or calcification that
 /// is thicker than 2.5 mm plus a voxel, and any other tissue thicker than 8 mm plus a voxel.
-/// Applies only if at least 500 voxels are deeper than 8 mm, with a robust standard deviation of at
-/// most 60 HU. `volume`: CT, with or without noise. Time and memory grow with the mask's grid.
+/// Applies only if at least 500 voxels are deeper than 8 mm, with a median above -30 HU (not lung)
+/// and a robust standard deviation of at most 60 HU. `volume`: CT, with or without noise. Time and
+/// memory grow with the mask's grid.
 OrganMargin findOrganMargin(const Mask& segment, const Volume& volume);
 
 } // namespace fenestra
