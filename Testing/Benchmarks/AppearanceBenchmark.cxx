@@ -1,18 +1,19 @@
-// Measures the appearance of images over the scenes of a table (see README.md in this folder): the
-// spread of lightness if there is no focus, else the color difference across the focus edge. Prints
-// CSV.
+// Renders a command line of `fenestra`, and measures the appearance of the image (see README.md in
+// this folder). Prints CSV.
 
+#include "AppearanceMeasures.h"
 #include "Program.h"
-#include "References.h"
-#include "base/Color.h"
-#include "denoise/features/Denoising.h"
-#include "files/images/DisplayTransform.h"
-#include "image/ColorVision.h"
-#include "program/CommandLine.h"
-#include "scene/FilmImage.h"
-#include "scene/PreparedScene.h"
+#include "VisibleTissue.h"
 
-#include <algorithm>
+#include "denoise/features/Denoising.h"
+#include "files/images/ImageWriter.h"
+#include "io/Outputs.h"
+#include "program/CommandLine.h"
+#include "program/RenderOptions.h"
+#include "program/UsageError.h"
+#include "scene/Defaults.h"
+#include "scene/FilmImage.h"
+
 #include <iomanip>
 #include <iostream>
 
@@ -21,147 +22,203 @@ namespace {
 
 constexpr const char* group = "Benchmark";
 const Option optionTable[] = {
-    {"scenes", "A,B,...", group, "Scenes of the table [all]"},
-    {"phantoms", "DIR", group, "Folder of the phantoms [benchmarks of the build]"},
-    {"table", "FILE", group, "Table of scenes [appearance-scenes.txt of the source tree]"},
+    {"name", "NAME", group, "First column of the table [scene]"},
+    {"bounds", "A1,A2,...", group, "Measures whose bounds apply [all but contrast]"},
+    {"image", "FILE", group, "Image to write, a .png"},
+    {"header", "", group, "Print the names of the columns first"},
 };
 
-const CommandSyntax syntax = {"AppearanceBenchmark", "Measures image appearance.", {}, optionTable};
+const CommandSyntax syntax = {"AppearanceBenchmark",
+                              "Measures image appearance.",
+                              {{"ARGUMENT", "-- and the arguments of fenestra", {}, true}},
+                              optionTable};
 
-/// Denoised display image with a transparent background: R G B A per pixel.
-std::vector<float> renderDisplay(const PreparedScene& scene, RenderSettings settings) {
-  settings.path.background.kind = Background::Kind::transparent;
+/// Range of a passing value.
+struct Bound {
+  double least = -infinity, greatest = infinity;
+};
+
+/// A group of measures by its number in README.md, one of its measures, and the bound of that.
+struct Measure {
+  std::string group, name;
+  std::optional<double> value;
+  Bound bound;
+};
+
+class Table {
+public:
+  Table(std::string scene, std::vector<std::string> bounds)
+      : m_scene(std::move(scene)), m_bounds(std::move(bounds)) {}
+
+  /// A measure without a value is reported as missing if its bound applies.
+  void print(const Measure& measure) const {
+    const bool isBounded =
+        (measure.bound.least > -infinity || measure.bound.greatest < infinity) &&
+        (m_bounds.empty() ? measure.group != "contrast"
+                          : std::ranges::find(m_bounds, measure.group) != m_bounds.end());
+    if (!measure.value && !(isBounded && !m_bounds.empty()))
+      return;
+    std::cout << m_scene << ',' << measure.group << ',' << measure.name << ',';
+    if (measure.value)
+      std::cout << std::setprecision(3) << *measure.value;
+    std::cout << ',';
+    if (isBounded && measure.bound.least > -infinity)
+      std::cout << measure.bound.least;
+    std::cout << ',';
+    if (isBounded && measure.bound.greatest < infinity)
+      std::cout << measure.bound.greatest;
+    const bool passes = measure.value && *measure.value >= measure.bound.least &&
+                        *measure.value <= measure.bound.greatest;
+    std::cout << ','
+              << (!isBounded       ? ""
+                  : !measure.value ? "missing"
+                  : passes         ? "pass"
+                                   : "FAIL")
+              << std::endl;
+  }
+
+private:
+  std::string m_scene;
+  std::vector<std::string> m_bounds;
+};
+
+RenderOptions parseArguments(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {"fenestra"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words)
+    argv.push_back(word.data());
+  const auto values = parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
+  if (!values)
+    throw usageError("ARGUMENT: --help renders nothing");
+  return makeRenderOptions(*values);
+}
+
+/// The image that `fenestra` writes to a .png.
+struct Rendered {
+  Raster<Rgb> display;
+  Raster<double> depth; ///< mm, mean over the samples of the first collision; else infinity
+};
+
+Rendered renderDisplay(const PreparedScene& scene, const RenderOptions& options,
+                       const std::optional<std::string>& path) {
   RenderMonitor monitor;
-  const Film film = render(scene.view(), settings, monitor).film;
+  const Film film = render(scene.view(), makeSettings(options, scene.background()), monitor).film;
   const Image image = makeFilteredImage(denoise(film, scene.view(), *scene.features()),
                                         film.width(), film.height());
+  if (path) {
+    Outputs outputs;
+    declareImage(*path, outputs);
+    writeImage(image, makeImagePlane(scene.camera()), *path, outputs, options.display);
+    outputs.commit();
+  }
   std::vector<float> rgba;
   for (std::size_t i = 0; i < image.find("A")->size(); ++i)
     for (const char* channel : {"R", "G", "B", "A"})
       rgba.push_back((*image.find(channel))[i]);
-  return toDisplay(rgba, {});
+  rgba = toDisplay(rgba, options.display);
+  Rendered rendered{{film.width(), film.height()}, {film.width(), film.height()}};
+  for (std::size_t i = 0; i < rendered.display.values.size(); ++i) {
+    const float* const pixel = &rgba[4 * i];
+    rendered.display.values[i] = Rgb(double{pixel[0]}, double{pixel[1]}, double{pixel[2]});
+  }
+  const Image raw = makeImage(film, scene.camera(), scene.clip(), {"depth"});
+  std::ranges::copy(*raw.find("Z"), rendered.depth.values.begin());
+  return rendered;
 }
 
-/// Mean of display-encoded colors.
-struct MeanColor {
-  Rgb sum = Rgb::Zero();
-  double count = 0.0;
-
-  void add(const float* rgba) {
-    sum += Rgb(double{rgba[0]}, double{rgba[1]}, double{rgba[2]});
-    count += 1.0;
-  }
-  Rgb linear() const { return decodeSrgb(sum / std::max(count, 1.0)); }
-};
-
-bool isOpaque(const float* rgba) {
-  return rgba[3] > 0.99F;
+/// Pixels whose camera rays hit the focus, and, if `depth` is given, something there.
+PixelMask findFocus(const PreparedScene& scene, const Raster<double>* depth = nullptr) {
+  PixelMask focus(scene.camera().width(), scene.camera().height());
+  const std::vector<double>& focusDepth = scene.clipResult().focusDepth;
+  for (std::size_t i = 0; i < focusDepth.size(); ++i)
+    focus.values[i] = focusDepth[i] < infinity && (!depth || depth->values[i] < infinity) ? 1 : 0;
+  return focus;
 }
 
-void printSpread(const std::vector<float>& rgba) {
-  double sum = 0.0, squares = 0.0, count = 0.0;
-  MeanColor mean;
-  for (std::size_t i = 0; i < rgba.size(); i += 4) {
-    if (!isOpaque(&rgba[i]))
-      continue;
-    MeanColor one;
-    one.add(&rgba[i]);
-    mean.add(&rgba[i]);
-    const double lightness = toLab(one.linear()).L;
-    sum += lightness;
-    squares += lightness * lightness;
-    count += 1.0;
-  }
-  const Rgb color = 255.0 * mean.sum / count;
-  std::cout << sum / count << ',' << std::sqrt(squares / count - sum / count * sum / count) << ','
-            << std::lround(color[0]) << ',' << std::lround(color[1]) << ',' << std::lround(color[2])
-            << ",,,,,," << std::endl;
+template <typename Value, typename Part>
+std::optional<double> part(const std::optional<Value>& value, Part Value::*member) {
+  return value ? std::optional<double>((*value).*member) : std::nullopt;
 }
 
-/// Distance, in pixels, of a pixel to the nearest one on the other side of the focus edge.
-class EdgeDistance {
-public:
-  EdgeDistance(const std::vector<double>& focusDepth, int width, int height)
-      : m_depth(focusDepth), m_width(width), m_height(height) {}
-
-  bool isFocus(int column, int row) const {
-    return m_depth[static_cast<std::size_t>(row) * static_cast<std::size_t>(m_width) +
-                   static_cast<std::size_t>(column)] < infinity;
-  }
-  /// Infinity beyond `farthest`.
-  double at(int column, int row, int farthest) const {
-    double nearest = infinity;
-    for (int y = std::max(0, row - farthest); y <= std::min(m_height - 1, row + farthest); ++y)
-      for (int x = std::max(0, column - farthest); x <= std::min(m_width - 1, column + farthest);
-           ++x)
-        if (isFocus(x, y) != isFocus(column, row))
-          nearest = std::min(nearest, std::hypot(x - column, y - row));
-    return nearest <= farthest ? nearest : infinity;
-  }
-
-private:
-  const std::vector<double>& m_depth;
-  int m_width, m_height;
-};
-
-/// Prints the differences between the mean colors 3 to 8 pixels inside and outside the focus edge.
-void printContrast(const PreparedScene& scene, const std::vector<float>& rgba) {
-  constexpr int nearest = 3, farthest = 8;
-  const Camera& camera = scene.camera();
-  const EdgeDistance edge(scene.clipResult().focusDepth, camera.width(), camera.height());
-  MeanColor inside, outside;
-  for (int row = 0; row < camera.height(); ++row)
-    for (int column = 0; column < camera.width(); ++column) {
-      const float* const pixel =
-          &rgba[4 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(camera.width()) +
-                     static_cast<std::size_t>(column))];
-      const double distance = edge.at(column, row, farthest);
-      if (isOpaque(pixel) && distance >= nearest && distance <= farthest)
-        (edge.isFocus(column, row) ? inside : outside).add(pixel);
-    }
-  const auto toSimulatedLab = [&](const MeanColor& color, ColorVision vision) {
-    return toLab(simulateVision(vision, color.linear()));
-  };
-  std::cout << ",,,,,";
-  for (const ColorVision vision : {ColorVision::normal, ColorVision::protan, ColorVision::deutan})
-    std::cout << deltaE76(toSimulatedLab(inside, vision), toSimulatedLab(outside, vision)) << ',';
-  std::cout << std::abs(toLab(inside.linear()).L - toLab(outside.linear()).L) << ",\"";
-  if (const TintContrast* tint = scene.tintContrast())
-    std::cout << summary(*tint);
-  else
-    std::cout << summary(scene.contrast());
-  std::cout << '"' << std::endl;
+std::optional<double> percent(const std::optional<double>& fraction) {
+  return fraction ? std::optional(100.0 * *fraction) : std::nullopt;
 }
 
-void measureScene(const SceneCase& sceneCase) {
-  if (!sceneCase.missing.empty()) {
-    std::cerr << sceneCase.name << ": not present: " << sceneCase.missing << std::endl;
-    return;
-  }
-  RenderOptions options = sceneCase.options();
-  options.scene.features = options.scene.measure = true;
-  const PreparedScene scene(options.scene);
-  const std::vector<float> rgba = renderDisplay(scene, makeSettings(options, scene.background()));
-  std::cout << std::setprecision(3) << sceneCase.name << ',';
+void measureTissues(const Table& table, const PreparedScene& scene, const Input& input,
+                    const RenderRequest& request, const Raster<Lab>& image,
+                    const VisibleSurface& surface, const PixelMask& focus) {
+  std::optional<SegmentsInput> segments;
   if (scene.focus())
-    printContrast(scene, rgba);
-  else
-    printSpread(rgba);
+    segments =
+        input.segments({request.volume, request.segmentation, request.labels}, scene.volume().grid);
+  const TissueRegions regions =
+      findTissueRegions(scene, surface, focus, segments ? &segments->segmentation : nullptr);
+  const double pitch = scene.camera().pixelPitch();
+  table.print({"A2", "muscle", measureMottle(image, regions.muscle, pitch), {.greatest = 1.5}});
+  table.print({"A2", "heart", measureMottle(image, regions.heart, pitch), {.greatest = 1.5}});
+  table.print({"A2", "focus", measureMottle(image, regions.focus, pitch), {.greatest = 2.0}});
+}
+
+void measureFocus(const Table& table, const PreparedScene& scene, const Rendered& rendered,
+                  const Raster<Lab>& image, const VisibleSurface& surface) {
+  const double pitch = scene.camera().pixelPitch();
+  const PixelMask focus = findFocus(scene);
+  const auto stairs = measureStairs(rendered.depth, findFocus(scene, &rendered.depth), pitch);
+  table.print({"A1", "stairs rms deg", part(stairs, &AngleSpread::rms), {.greatest = 8.0}});
+  table.print({"A1", "stairs p95 deg", part(stairs, &AngleSpread::p95), {.greatest = 14.0}});
+  const auto noiseFree = measureStairs(surface.depth, findFocus(scene, &surface.depth), pitch);
+  table.print({"A1", "without noise rms", part(noiseFree, &AngleSpread::rms), {}});
+  table.print({"A6", "highlights %", percent(measureHighlights(image, focus, pitch)), {1.0, 4.0}});
+  table.print({"A7", "dark edge %", percent(measureDarkEdge(image, focus)), {.greatest = 1.0}});
+  const auto contrast = measureContrast(rendered.display, focus, surface.covered);
+  table.print({"contrast", "Delta E", part(contrast, &EdgeContrast::deltaE), {.least = 20.0}});
+  table.print(
+      {"contrast", "Delta E protan", part(contrast, &EdgeContrast::deltaEProtan), {.least = 12.0}});
+  table.print(
+      {"contrast", "Delta E deutan", part(contrast, &EdgeContrast::deltaEDeutan), {.least = 12.0}});
+  table.print(
+      {"contrast", "Delta L*", part(contrast, &EdgeContrast::deltaLightness), {.least = 8.0}});
+}
+
+void measureImage(const Table& table, const RenderOptions& options,
+                  const std::optional<std::string>& path) {
+  RenderRequest request = options.scene;
+  request.features = request.measure = true;
+  const Input input(request.input);
+  const PreparedScene scene(request, input);
+  for (const std::string& choice : scene.choices())
+    std::cerr << choice << std::endl;
+  const Rendered rendered = renderDisplay(scene, options, path);
+  const Raster<Lab> image = toLabRaster(rendered.display);
+  const VisibleSurface surface(scene);
+  const Tone tone = measureTone(image, surface.covered);
+  table.print({"A5", "L* p5", tone.dark, {}});
+  table.print({"A5", "L* median", tone.median, {}});
+  table.print({"A5", "L* p95", tone.light, {}});
+  table.print({"A5", "L* p95 - p5", tone.light - tone.dark, {.least = 45.0}});
+  table.print({"A5", "C* median", tone.chroma, {18.0, 32.0}});
+  table.print({"A5", "C* p95", tone.chroma95, {.greatest = 42.0}});
+  if (scene.focus())
+    measureFocus(table, scene, rendered, image, surface);
+  if (!isPlausibleModality(Modality::ct, scene.volume()))
+    return;
+  measureTissues(table, scene, input, request, image, surface, findFocus(scene));
+  if (scene.focus())
+    table.print({"A8",
+                 "foreign surface %",
+                 percent(measureForeignSurface(scene.volume(), *scene.focus())),
+                 {.greatest = 2.0}});
 }
 
 int benchmark(int argc, char** argv) {
   const std::optional<OptionValues> values = parseCommandLine(syntax, argc, argv, 1);
   if (!values)
     return 0;
-  const std::vector<std::string> scenes = values->list("scenes");
-  std::cout << "scene,lightness_mean,lightness_spread,mean_red,mean_green,mean_blue,delta_e,"
-               "delta_e_protan,delta_e_deutan,delta_lightness,predicted"
-            << std::endl;
-  for (const SceneCase& scene :
-       readScenes(values->text("table").value_or(FENESTRA_APPEARANCE_TABLE),
-                  findFolders(values->text("phantoms"))))
-    if (scenes.empty() || std::ranges::find(scenes, scene.name) != scenes.end())
-      measureScene(scene);
+  if (values->has("header"))
+    std::cout << "scene,measure,part,value,least,greatest,result" << std::endl;
+  measureImage(Table(values->text("name").value_or("scene"), values->list("bounds")),
+               parseArguments(values->texts("ARGUMENT")), values->text("image"));
   return 0;
 }
 
