@@ -13,7 +13,6 @@ folder=${FENESTRA_BUILD:-$top/build}
 out=${OUT:-$folder/appearance}
 data=${FENESTRA_DATA:-$top/../shared/data}
 csv=$out/appearance.csv
-samples=12
 
 names=() given=() case=()
 while [ $# -gt 0 ] && [ "$1" != -- ]; do
@@ -33,22 +32,28 @@ if [ -z "${FENESTRA_BUILD:-}" ]; then
   (cd "$top" && cmake --preset release -DFENESTRA_BUILD_TESTS=ON >/dev/null &&
     cmake --build "$folder" --target AppearanceBenchmark) >&2 || die "the build failed (see above)"
 fi
+found=
 mkdir -p "$out"
 echo scene,measure,part,value,least,greatest,result >"$csv"
 
-# measure NAME BOUNDS ARGUMENT...: measures an image. BOUNDS: groups of measures that must pass; "": all.
+# measure NAME BOUNDS VOLUME [OPTION VALUE]...: measures an image. BOUNDS: groups of measures that must pass; "": all but
+# contrast. Options among the ARGUMENTs replace those of the scene.
 measure() {
-  local name=$1 bounds=$2
-  shift 2
+  local name=$1 bounds=$2 arguments=("$3")
   [ ${#names[@]} -eq 0 ] || [[ " ${names[*]} " == *" $name "* ]] || return 0
-  if [ ! -e "$1" ]; then
-    echo "$name: SKIPPED, not found: $1" >&2
+  found=yes
+  if [ ${#case[@]} -eq 0 ] && [ ! -e "$3" ]; then
+    echo "$name: SKIPPED, not found: $3" >&2
     return 0
   fi
+  set -- "${@:4}" --size 640x640 --samples 12
+  while [ $# -gt 0 ]; do
+    [[ " ${given[*]} " == *" $1"[\ =]* ]] || arguments+=("$1" "$2")
+    shift 2
+  done
   echo "$name" >&2
-  "$folder/bin/AppearanceBenchmark" --name "$name" ${bounds:+--bounds "$bounds"} --image "$out/$name.png" -- "$@" \
-    --size 640x640 --samples "$samples" "${given[@]}" >>"$csv" 2>"$out/$name.log" ||
-    { cat "$out/$name.log" >&2; die "$name failed"; }
+  "$folder/bin/AppearanceBenchmark" --name "$name" ${bounds:+--bounds "$bounds"} --image "$out/$name.png" -- \
+    "${arguments[@]}" "${given[@]}" >>"$csv" 2>"$out/$name.log" || { cat "$out/$name.log" >&2; die "$name failed"; }
 }
 
 abdomen=("$data/abdomen_ct_totalseg/ct.nii.gz" --segmentation "$data/abdomen_ct_totalseg/seg_multiorgan.nii.gz")
@@ -59,15 +64,16 @@ knee=("$data/spl_knee_atlas_labels/SYNTHETIC_mr_256.nii.gz" --segmentation "$dat
 torso=("$data/torso_ct_ccth_a01/ct.nii.gz")
 organs=("${torso[@]}" --segmentation "$data/torso_ct_ccth_a01/seg_totalsegmentator_rtstruct.nii.gz")
 head=("$data/head_mr_seg3d/t1.nii.gz" --segmentation "$data/head_mr_seg3d/seg_brain_skull.nii.gz")
+kidneys=(--position 0,930,345 --target 0,130,345 --scale 95)
 lungs=lung_upper_lobe_left,lung_lower_lobe_left,lung_upper_lobe_right,lung_middle_lobe_right,lung_lower_lobe_right
 
 if [ ${#case[@]} -gt 0 ]; then
   measure case "" "${case[0]}" --segmentation "${case[1]}" --focus "${case[2]}" --view auto
 else
   measure liver A1,A2,A5,A6,A7,A8 "${organs[@]}" --focus liver --position 465,765,523 --target 59.8,-10,414.7 --scale 150
-  measure kidneys A1,A5,A6,A7,A8 "${abdomen[@]}" --focus kidney_left,kidney_right --view auto
+  measure kidneys A1,A5,A6,A7,A8 "${abdomen[@]}" --focus kidney_left,kidney_right "${kidneys[@]}"
   measure aorta A1,A5,A6,A7 "${dissection[@]}" --focus aorta_true_lumen,aorta_false_lumen,aorta --view auto
-  measure vessels A5 "${abdomen[@]}" --focus kidney_left,kidney_right,aorta,inferior_vena_cava --view anterior
+  measure vessels A5 "${abdomen[@]}" --focus kidney_left,kidney_right,aorta,inferior_vena_cava "${kidneys[@]}"
   measure lungs A5 "${organs[@]}" --focus "$lungs" --view anterior
   measure skeleton A5 "${torso[@]}" --transfer ct-bone --view anterior
   measure skin A5 "${torso[@]}" --view anterior
@@ -81,6 +87,7 @@ else
   measure contrast-torso-liver contrast "${organs[@]}" --focus liver --view auto --materials auto
   measure contrast-knee contrast "${knee[@]}" --focus 83 --view auto --materials auto
 fi
+[ -n "$found" ] || die "${names[*]}: no such scene"
 
 awk -F , '
   NR > 1 {
