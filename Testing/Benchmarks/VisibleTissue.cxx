@@ -173,6 +173,7 @@ TissueRange findRange(const Mask& focus, const Value& value) {
 template <typename Visitor>
 void forEachSurfacePoint(const Mask& mask, const Visitor& visit) {
   const Field field(mask.grid, mask.voxels);
+  const Vec3 spacing = mask.grid.spacing();
   const double level = 0.5 * mask.maxValue;
   const Size3& size = mask.grid.size;
   for (std::int64_t z = 0; z < size.z(); ++z)
@@ -187,7 +188,9 @@ void forEachSurfacePoint(const Mask& mask, const Visitor& visit) {
           if ((a < 0.0) == (b < 0.0))
             continue;
           const Vec3 index = from.cast<double>() + a / (a - b) * Vec3::Unit(axis);
-          visit(mask.grid.indexToWorld * index, field.gradient(index).normalized());
+          const Vec3 inward = field.gradient(index).normalized();
+          const Vec3 edge = mask.grid.indexToWorld.linear() * Vec3::Unit(axis) / spacing[axis];
+          visit(mask.grid.indexToWorld * index, inward, std::abs(inward.dot(edge)) / spacing[axis]);
         }
 }
 
@@ -242,10 +245,10 @@ std::optional<double> measureForeignSurface(const Volume& volume, const Mask& fo
     if (range.count < 200 || range.deviation > 60.0)
       return std::nullopt;
     double foreign = 0.0, all = 0.0;
-    forEachSurfacePoint(focus, [&](const Vec3& world, const Vec3& inward) {
+    forEachSurfacePoint(focus, [&](const Vec3& world, const Vec3& inward, double area) {
       const double difference = std::abs(value(world + inward) - range.median);
-      foreign += difference > 3.5 * range.deviation ? 1.0 : 0.0;
-      all += 1.0;
+      foreign += difference > 3.5 * range.deviation ? area : 0.0;
+      all += area;
     });
     return foreign / all;
   });
