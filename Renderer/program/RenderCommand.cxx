@@ -178,8 +178,13 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
       json[key] = stats.filtered ? Json(*stats.filtered) : Json(); // null: unknown
   json["peakBytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
   addClip(json, scene, stats.focus);
-  if (scene.focus())
-    json["focusVoxels"] = scene.focus()->grid.voxelCount();
+  if (const Mask* focus = scene.focus()) {
+    json["focusVoxels"] = focus->grid.voxelCount();
+    const Vec3 native = scene.nativeSpacing();
+    json["labelSmoothing"] = {{"sigmaMm", focus->smoothing},
+                              {"nativeMm", {native.x(), native.y(), native.z()}},
+                              {"volumeChange", focus->volumeChange}};
+  }
   if (const Tint* tint = scene.tint())
     json["labels"] = {{"components", tint->albedo.size()},
                       {"pureFraction", tint->weights->pureFraction()},

@@ -81,7 +81,8 @@ struct RenderOptionTable {
        OverrideGroup::focus, Requires::focus},
       {"label-smoothing", "MM", clipGroup,
        "Smooths the segments by a Gaussian of this standard deviation; thick slices are "
-       "interpolated first; auto: 0.6 of the longest voxel edge, except for thin parts",
+       "interpolated first; auto: 1.25 of the edge of the voxels on which they were made, at equal "
+       "volume, and 0.4 of that for thin parts and narrow gaps",
        ValueSpec::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0, 0.0), OverrideGroup::own,
        Requires::labels},
       {"clip", "MODE", clipGroup,
@@ -129,8 +130,8 @@ struct RenderOptionTable {
        "Moves the cut away from the camera (into the focus) or, if negative, toward it",
        ValueSpec::number(-1e6, 1e6).bind(surface.offset), OverrideGroup::clip, Requires::clip},
       {OptionNames("clip-softness", "soft"), "MM", clipGroup,
-       "Depth behind the cut over which the volume fades in; auto: as --label-smoothing for --clip "
-       "surface, hole and cutaway, else 0",
+       "Depth behind the cut over which the volume fades in; auto: 0.6 for --clip surface, hole and "
+       "cutaway, else 0",
        ValueSpec::numberOrAuto(clip.softness, 0.0, 1e6, 0.0), OverrideGroup::clip, Requires::clip},
       {"context-density", "F", clipGroup,
        "Opacity of everything but the focus: factor on its extinction, 0 (invisible) to 1",

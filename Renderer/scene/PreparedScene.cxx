@@ -14,6 +14,14 @@ void append(const std::vector<Item>& from, std::vector<Item>& to) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
+std::string describeSmoothing(const Mask& focus, const Vec3& native) {
+  const auto width = [&](int axis) { return toString(native[axis], 3); };
+  const double percent = std::round(1e3 * focus.volumeChange) / 10.0;
+  return concat("segments smoothed by ", toString(focus.smoothing, 3), " mm (made on voxels of ",
+                width(0), " x ", width(1), " x ", width(2), " mm); volume of the focus ",
+                percent < 0.0 ? "" : "+", toString(percent, 3), " %");
+}
+
 } // namespace
 
 PreparedScene::PreparedScene(const RenderRequest& request)
@@ -203,7 +211,7 @@ std::vector<std::string> PreparedScene::choices() const {
                                  toString(margin.volume / 1000.0, 3), " ml of other tissue")
                         : concat("margin of ", margin.segment, ": none, not one tissue"));
   if (m_focus->mask && m_focus->mask->smoothing > 0.0)
-    facts.push_back(concat("segments smoothed by ", toString(m_focus->mask->smoothing, 3), " mm"));
+    facts.push_back(describeSmoothing(*m_focus->mask, nativeSpacing()));
   if (tint()) {
     const std::size_t colors = tint()->albedo.size() - 1;
     facts.push_back(concat("materials: ", m_materials->source, ", ", colors,

@@ -49,6 +49,8 @@ public:
   Domain domain() const { return {volume().grid, m_settings->crop}; }
   /// Mask of the focus; null without one.
   const Mask* focus() const { return m_focus->mask ? &*m_focus->mask : nullptr; }
+  /// Of the segmentation, mm (Segmentation::nativeSpacing); requires a focus or materials.
+  Vec3 nativeSpacing() const { return m_segments->segmentation.nativeSpacing(); }
   const TransferFunction& transfer() const { return m_transfer->function; }
   /// Source of the transfer function (TransferChoice::source).
   const std::string& transferName() const { return m_transfer->source; }

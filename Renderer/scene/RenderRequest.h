@@ -30,12 +30,15 @@ struct PlaneRequest {
   bool operator==(const PlaneRequest&) const = default;
 };
 
+/// Default width of the soft edge behind a clip through a focus, mm.
+inline constexpr double defaultSoftness = 0.6;
+
 struct ClipRequest {
   std::optional<ClipMode> mode = {};      ///< by default `surface` with a focus, else `none`
   std::optional<PlaneRequest> plane = {}; ///< by default a plane fitted to the focus
   double ghost = 0.1; ///< fraction of the extinction that remains in front of the surface (`ghost`)
-  /// Width of the soft edge behind the cut, mm. By default it is the uncertainty of the focus
-  /// labels (chooseSmoothing) in the modes surface, hole and cutaway, else 0.
+  /// Width of the soft edge behind the cut, mm; by default defaultSoftness in the modes surface,
+  /// hole and cutaway, else 0.
   std::optional<double> softness = {};
   /// A plane uses only the offset. `mode` and `softness` replace the corresponding members.
   SurfaceOptions surface = {.boundary = Boundary::exact};

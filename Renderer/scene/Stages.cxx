@@ -149,7 +149,7 @@ ClipResult buildDepthClip(const ClipRequest& request, ClipMode mode, const Domai
   if (mode == ClipMode::ghost)
     options.edge.ghost = double{static_cast<float>(request.ghost)};
   options.edge.softness =
-      request.softness.value_or(mode == ClipMode::ghost ? 0.0 : chooseSmoothing(focus.grid));
+      request.softness.value_or(mode == ClipMode::ghost ? 0.0 : defaultSoftness);
   ClippingSurface surface = buildSteadySurface(camera, domain, focus, options, steadyDegrees);
   ClipResult result{.clip = std::move(surface.clip),
                     .focusDepth = viewportDepths(surface.focus, camera),

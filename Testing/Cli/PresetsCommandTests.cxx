@@ -68,12 +68,11 @@ TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
 
   Arguments written = {"--focus", "FemoralCartilage,TibialCartilage"};
   for (const std::string& line : lines)
-    for (const char* option : {"materials", "transfer", "lights", "view", "clip", "clip-boundary",
-                               "label-smoothing", "clip-softness"})
+    for (const char* option : {"materials", "transfer", "lights", "view", "clip", "clip-boundary"})
       if (line.starts_with(std::string(option) + ": "))
         written.insert(written.end(),
                        {std::string("--") + option, line.substr(std::string(option).size() + 2)});
-  EXPECT_GE(written.size(), 16u);
+  EXPECT_EQ(written.size(), 14u);
   ASSERT_EQ(renderKnee(addSegments(written)).status, 0);
   EXPECT_EQ(readResult().channels, byPreset.channels);
   EXPECT_FALSE(readResult().header.contains("preset"));
@@ -87,8 +86,6 @@ TEST(PresetsCommand, OptionsOverrideThePreset) {
                            "scale: 70", "lights: studio", "preset: full"})
     EXPECT_TRUE(lines.contains(line)) << line;
   EXPECT_FALSE(hasLine(lines, "clip-boundary"));
-  EXPECT_TRUE(
-      hasLine(lines, "label-smoothing")); // still the preset's, since every clip mode uses it
   EXPECT_FALSE(lines.contains("focus: FemoralCartilage"));
   // --control-points and --clip-boundary are alternatives: one overrides the preset's other.
   const auto others = renderEcho(

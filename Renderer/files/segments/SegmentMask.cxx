@@ -3,6 +3,7 @@
 #include "base/Error.h"
 #include "files/segments/SegmentationReader.h"
 #include "io/MessageText.h"
+#include "model/masks/EqualVolume.h"
 #include "model/masks/MaskShaping.h"
 
 #include <tbb/blocked_range.h>
@@ -281,6 +282,14 @@ Error makeUnknownError(const std::string& source, const std::string& selector,
                    "it has " + formatSegments(segments));
 }
 
+/// Width of the labels' stairs, mm: the longer native edge of the two finer axes. Slices across the
+/// third axis are interpolated.
+double findStairWidth(const Vec3& nativeSpacing) {
+  std::array edges = {nativeSpacing.x(), nativeSpacing.y(), nativeSpacing.z()};
+  std::ranges::sort(edges);
+  return edges[1];
+}
+
 } // namespace
 
 std::size_t Segmentation::find(const std::string& selector) const {
@@ -389,8 +398,10 @@ Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& 
     for (std::size_t i = 0; i < chosen.size(); ++i)
       masks.push_back(shapeMask({chosen[i]}, shaping.margins[i]));
   const Mask all = uniteMasks(std::move(masks));
-  return shaping.smoothing ? smoothMask(all, *shaping.smoothing, volume)
-                           : smoothMaskAuto(all, volume);
+  Mask smooth = shaping.smoothing ? smoothMask(all, *shaping.smoothing, volume)
+                                  : smoothMaskAuto(all, findStairWidth(nativeSpacing()), volume);
+  smooth.volumeChange = measureVolumeChange(all, smooth, volume);
+  return smooth;
 }
 
 } // namespace fenestra

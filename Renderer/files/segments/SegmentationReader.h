@@ -2,8 +2,8 @@
 // Reads segmentations, and makes focus masks from their segments.
 
 #include "base/Error.h"
-#include "base/LargePages.h"
 #include "base/Vector.h"
+#include "files/segments/NativeGrid.h"
 #include "model/masks/MaskShaping.h"
 #include "model/volume/Mask.h"
 
@@ -12,7 +12,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 namespace fenestra {
@@ -38,9 +37,7 @@ struct SegmentStatistics {
 /// Label map in layers; segments in different layers may overlap.
 class Segmentation {
 public:
-  /// Labels in the smallest type that holds all values; a voxel's layers are adjacent, x fastest.
-  using Labels =
-      std::variant<LargeArray<std::uint8_t>, LargeArray<std::int16_t>, LargeArray<std::int32_t>>;
+  using Labels = fenestra::Labels;
 
   /// `source` is the file name in messages.
   Segmentation(std::string source, const Grid& grid, std::size_t layerCount, Labels labels,
@@ -49,7 +46,8 @@ public:
         m_grid(grid),
         m_layerCount(layerCount),
         m_labels(std::move(labels)),
-        m_segments(std::move(segments)) {}
+        m_segments(std::move(segments)),
+        m_nativeVoxels(estimateNativeVoxels(m_labels, grid.size, layerCount)) {}
 
   const Grid& grid() const { return m_grid; }
   /// File name in messages.
@@ -65,6 +63,8 @@ public:
   }
   /// Replaces the grid by one of equal size.
   void setGrid(const Grid& grid) { m_grid = grid; }
+  /// Edges of the voxels on which the labels were made, mm (estimateNativeVoxels).
+  Vec3 nativeSpacing() const { return m_nativeVoxels.cwiseProduct(m_grid.spacing()); }
   const std::vector<SegmentInfo>& segments() const { return m_segments; }
 
   /// Statistics of each segment, in order; one pass over the labels per layer.
@@ -94,6 +94,7 @@ private:
   std::size_t m_layerCount;
   Labels m_labels;
   std::vector<SegmentInfo> m_segments;
+  Vec3 m_nativeVoxels;
 };
 
 /// Interleaves `count` layers, stored one after the other, into a Segmentation's order.

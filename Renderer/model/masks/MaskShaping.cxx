@@ -6,7 +6,6 @@
 #include <itkImage.h>
 #include <itkSignedMaurerDistanceMapImageFilter.h>
 #include <itkSmoothingRecursiveGaussianImageFilter.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
@@ -81,8 +80,7 @@ Mask makeRegionMask(const Mask& from, const Region& region, std::uint8_t maxValu
   Affine indexToWorld = from.grid.indexToWorld;
   indexToWorld.translate(region.first.cast<double>());
   Mask mask{{region.size, indexToWorld}, std::move(voxels), 0, from.names, maxValue};
-  mask.count = std::ranges::count_if(
-      mask.voxels, [half = mask.threshold()](std::uint8_t voxel) { return voxel >= half; });
+  mask.count = mask.countInside();
   return mask;
 }
 
@@ -114,14 +112,18 @@ Mask applyMargin(Mask mask, double margin, const Grid& volume) {
   return makeRegionMask(mask, region, 1, std::move(voxels));
 }
 
+Size3 findOffset(const Mask& mask, const Mask& other) {
+  const Vec3 offset = other.grid.worldToIndex * mask.grid.indexToWorld.translation();
+  return offset.array().round().cast<std::int64_t>();
+}
+
 Mask uniteMasks(std::vector<Mask> masks) {
   if (masks.size() == 1)
     return std::move(masks.front());
   const Mask& first = masks.front();
   // Region of a mask in the voxels of the first mask.
   const auto findRegion = [&](const Mask& mask) {
-    const Vec3 place = first.grid.worldToIndex * mask.grid.indexToWorld.translation();
-    return Region{place.array().round().cast<std::int64_t>(), mask.grid.size};
+    return Region{findOffset(mask, first), mask.grid.size};
   };
   Region all = findRegion(first);
   for (const Mask& mask : masks) {
@@ -163,58 +165,6 @@ std::vector<std::uint8_t> blurRecursively(const Mask& mask, const Region& region
   return result;
 }
 
-/// Finds voxels of a mask that smoothing erased together with their neighborhood.
-class ErasedVoxels {
-public:
-  /// `first`: voxel of the mask where `smooth` begins.
-  ErasedVoxels(const Mask& mask, const Mask& smooth, const Size3& first)
-      : m_mask(mask), m_smooth(smooth), m_first(first) {}
-
-  /// Their linear indices in the smoothed mask.
-  std::vector<std::size_t> find() const {
-    const Size3& size = m_mask.grid.size;
-    std::vector<std::vector<std::size_t>> slices(static_cast<std::size_t>(size.z()));
-    tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
-      std::vector<std::size_t>& found = slices[static_cast<std::size_t>(z)];
-      for (std::int64_t y = 0; y < size.y(); ++y)
-        addRow({0, y, z}, found);
-    });
-    std::vector<std::size_t> voxels;
-    for (const std::vector<std::size_t>& slice : slices)
-      voxels.insert(voxels.end(), slice.begin(), slice.end());
-    return voxels;
-  }
-
-private:
-  void addRow(const Size3& start, std::vector<std::size_t>& found) const {
-    const std::uint8_t* const row = &m_mask.voxels[linearIndex(start, m_mask.grid.size)];
-    const std::size_t there = linearIndex(start - m_first, m_smooth.grid.size);
-    const std::uint8_t threshold = m_mask.threshold(), smoothThreshold = m_smooth.threshold();
-    for (std::int64_t x = 0; x < m_mask.grid.size.x(); ++x) {
-      const std::size_t voxel = there + static_cast<std::size_t>(x);
-      if (row[x] >= threshold && m_smooth.voxels[voxel] < smoothThreshold &&
-          isEmptyAround(start + Size3(x, 0, 0) - m_first))
-        found.push_back(voxel);
-    }
-  }
-
-  /// True if the smoothed mask is empty at the voxel and its 26 neighbors.
-  bool isEmptyAround(const Size3& at) const {
-    const Size3& size = m_smooth.grid.size;
-    const Size3 lower = (at - Size3::Constant(1)).cwiseMax(0);
-    const Size3 upper = (at + Size3::Constant(1)).cwiseMin((size.array() - 1).matrix());
-    for (std::int64_t z = lower.z(); z <= upper.z(); ++z)
-      for (std::int64_t y = lower.y(); y <= upper.y(); ++y)
-        for (std::int64_t x = lower.x(); x <= upper.x(); ++x)
-          if (m_smooth.voxels[linearIndex({x, y, z}, size)] >= m_smooth.threshold())
-            return false;
-    return true;
-  }
-
-  const Mask &m_mask, &m_smooth;
-  Size3 m_first;
-};
-
 } // namespace
 
 Mask smoothMask(const Mask& mask, double sigma, const Grid& volume) {
@@ -228,21 +178,6 @@ Mask smoothMask(const Mask& mask, double sigma, const Grid& volume) {
                                    ? blurRecursively(mask, region, sigma)
                                    : blurMask(mask, region.first, region.size, sigmas));
   result.smoothing = sigma;
-  return result;
-}
-
-Mask smoothMaskAuto(const Mask& mask, const Grid& volume) {
-  const double sigma = chooseSmoothing(mask.grid);
-  if (sigma > maxKernelSigma * mask.grid.spacing().minCoeff())
-    return mask; // extremely anisotropic voxels
-  Mask result = smoothMask(mask, sigma, volume);
-  const Vec3 first = mask.grid.worldToIndex * result.grid.indexToWorld.translation();
-  const std::vector<std::size_t> erased =
-      ErasedVoxels(mask, result, first.array().round().cast<std::int64_t>()).find();
-  for (const std::size_t voxel : erased) {
-    result.voxels[voxel] = result.maxValue;
-    ++result.count;
-  }
   return result;
 }
 

@@ -28,6 +28,9 @@ struct MaskShaping {
 /// the volume. Throws Error (output) for more than 2^31 voxels.
 Mask applyMargin(Mask mask, double margin, const Grid& volume);
 
+/// Voxel of `other` where a mask on the same lattice begins.
+Size3 findOffset(const Mask& mask, const Mask& other);
+
 /// Union of one or more masks on the same label map's lattice.
 Mask uniteMasks(std::vector<Mask> masks);
 
@@ -38,15 +41,13 @@ Mask uniteMasks(std::vector<Mask> masks);
 /// outline's shift per slice; only a Gaussian of that width would smooth them.
 Mask interpolateSlices(Mask mask);
 
-/// Sigma, mm, that removes the staircase of a label map and preserves shapes: 0.6 times the longest
-/// voxel edge after interpolateSlices. `labels`: the grid before or after it, with equal result.
-double chooseSmoothing(const Grid& labels);
-
 /// Convolves the indicator with a Gaussian, `sigma` in mm; maxValue becomes 255. Structures thinner
 /// than about sigma disappear.
 Mask smoothMask(const Mask& mask, double sigma, const Grid& volume);
-/// Smooths by chooseSmoothing(), but preserves structures that this would erase, such as vessels
-/// one voxel wide. Masks whose voxels are more than ten times as long as wide stay unchanged.
-Mask smoothMaskAuto(const Mask& mask, const Grid& volume);
+/// Removes the stairs of labels that were made on voxels `native` mm wide: a Gaussian of 1.25 *
+/// native at equal volume (EqualVolume.h). Parts and gaps narrower than about four native voxels
+/// get 0.4 of that sigma. Structures that even this would erase, such as vessels one voxel wide,
+/// remain. Masks with extremely anisotropic voxels stay unchanged.
+Mask smoothMaskAuto(const Mask& mask, double native, const Grid& volume);
 
 } // namespace fenestra

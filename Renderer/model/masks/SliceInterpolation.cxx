@@ -148,14 +148,6 @@ Grid subdivideGrid(const Grid& grid, int axis, std::int64_t parts) {
 
 } // namespace
 
-double chooseSmoothing(const Grid& labels) {
-  Grid grid = labels;
-  for (Subdivision division = computeSubdivision(grid); division.parts > 1;
-       division = computeSubdivision(grid))
-    grid = subdivideGrid(grid, division.axis, division.parts);
-  return 0.6 * grid.spacing().maxCoeff();
-}
-
 Mask interpolateSlices(Mask mask) {
   const std::int64_t parts = computeSubdivision(mask.grid).parts;
   if (parts == 1)
@@ -191,6 +183,8 @@ Mask interpolateSlices(Mask mask) {
     }
   });
   result.count = std::ranges::count(result.voxels, std::uint8_t{1});
+  const auto before = parts * std::ranges::count(mask.voxels, std::uint8_t{1});
+  result.volumeChange = static_cast<double>(result.count) / static_cast<double>(before) - 1.0;
   return result;
 }
 

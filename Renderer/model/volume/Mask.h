@@ -3,6 +3,7 @@
 
 #include "model/volume/Grid.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -21,6 +22,13 @@ struct Mask {
   std::vector<std::string> names;   ///< names of the segments, for messages
   std::uint8_t maxValue = 1;        ///< voxel value of indicator 1; 255 in a smoothed mask
   double smoothing = 0.0;           ///< sigma of the Gaussian applied to it, mm; 0: none
+  double volumeChange = 0.0;        ///< by smoothing, relative to the labels' volume
+
+  /// Number of voxels whose centers are inside the surface.
+  std::int64_t countInside() const {
+    return std::ranges::count_if(
+        voxels, [half = threshold()](std::uint8_t voxel) { return voxel >= half; });
+  }
 
   /// Smallest voxel value inside the surface: maxValue / 2, rounded up.
   std::uint8_t threshold() const { return static_cast<std::uint8_t>(maxValue - maxValue / 2); }

@@ -1,0 +1,77 @@
+// Smoothing of label maps without a choice by the user (smoothMaskAuto).
+
+#include "model/masks/EqualVolume.h"
+#include "model/masks/GaussianBlur.h"
+#include "model/masks/MaskShaping.h"
+#include "model/masks/ThinParts.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+/// Radius, in native edges, of the ball that does not fit into thin parts; and their part of sigma.
+constexpr double thinRadius = 2.0, thinSigma = 0.4;
+
+/// Smooths `places`, thin parts and narrow gaps, less.
+void sharpen(const Mask& labels, const Size3& first, const std::vector<std::uint8_t>& places,
+             Mask& smooth) {
+  const Size3& size = smooth.grid.size;
+  const Vec3 sigmas = thinSigma * smooth.smoothing * smooth.grid.spacing().cwiseInverse();
+  Mask thin;
+  thin.grid = smooth.grid;
+  thin.voxels = places;
+  const std::vector<std::uint8_t> sharp = blurMask(labels, first, size, sigmas);
+  const std::vector<std::uint8_t> weights = blurMask(thin, Size3::Zero(), size, sigmas);
+  tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
+    for (std::size_t i = linearIndex({0, 0, z}, size); i < linearIndex({0, 0, z + 1}, size); ++i) {
+      const int more = weights[i] * (sharp[i] - smooth.voxels[i]);
+      smooth.voxels[i] =
+          static_cast<std::uint8_t>(smooth.voxels[i] + (more + (more < 0 ? -127 : 127)) / 255);
+    }
+  });
+}
+
+/// True if the mask is empty at a voxel and its six neighbors.
+bool isEmptyAround(const Mask& mask, std::size_t voxel) {
+  const auto at = static_cast<std::int64_t>(voxel);
+  const Size3& size = mask.grid.size;
+  const Size3 steps(1, size.x(), size.x() * size.y());
+  const auto isEmpty = [&](std::int64_t i) {
+    return i < 0 || i >= size.prod() || mask.voxels[static_cast<std::size_t>(i)] < mask.threshold();
+  };
+  return isEmpty(at) && std::ranges::all_of(steps, [&](std::int64_t step) {
+           return isEmpty(at - step) && isEmpty(at + step);
+         });
+}
+
+/// Restores voxels of thin parts that smoothing erased together with their neighbors.
+void restoreErased(const std::vector<std::size_t>& thin, Mask& smooth) {
+  std::vector<std::size_t> erased;
+  std::ranges::copy_if(thin, std::back_inserter(erased),
+                       [&](std::size_t voxel) { return isEmptyAround(smooth, voxel); });
+  for (const std::size_t voxel : erased)
+    smooth.voxels[voxel] = smooth.maxValue;
+}
+
+} // namespace
+
+Mask smoothMaskAuto(const Mask& mask, double native, const Grid& volume) {
+  const double sigma = 1.25 * native;
+  constexpr double mostVoxels = 16.0; // limits time
+  if (sigma > mostVoxels * mask.grid.spacing().minCoeff())
+    return mask; // extremely anisotropic voxels
+  Mask result = smoothMask(mask, sigma, volume);
+  const Size3 first = findOffset(result, mask);
+  const ThinParts thin = findThinParts(mask, first, result.grid.size, thinRadius * native);
+  if (!thin.places.empty())
+    sharpen(mask, first, thin.places, result);
+  equalizeVolume(mask, volume, result);
+  restoreErased(thin.inside, result);
+  result.count = result.countInside();
+  return result;
+}
+
+} // namespace fenestra
