@@ -16,7 +16,7 @@ void append(const std::vector<Item>& from, std::vector<Item>& to) {
 
 std::string describeSmoothing(const Mask& focus, const Vec3& native) {
   const auto width = [&](int axis) { return toString(native[axis], 3); };
-  const double percent = std::round(1e3 * focus.volumeChange) / 10.0;
+  const double percent = std::round(1e3 * focus.volumeChange) / 10.0 + 0.0; // no -0
   return concat("segments smoothed by ", toString(focus.smoothing, 3), " mm (made on voxels of ",
                 width(0), " x ", width(1), " x ", width(2), " mm); volume of the focus ",
                 percent < 0.0 ? "" : "+", toString(percent, 3), " %");

@@ -89,7 +89,7 @@ double estimateNativeEdge(const std::vector<std::int64_t>& changes, std::size_t 
   constexpr std::int64_t fewestChanges = 16; // typical of planes that count
   constexpr std::size_t fewestPlanes = 30;
   constexpr std::int64_t emptyRatio = 8; // a plane with so many times fewer is empty
-  constexpr double fewestEmpty = 0.15;   // fraction; shapes, such as boxes, have empty planes, too
+  constexpr double fewestEmpty = 0.25;   // fraction; shapes, such as boxes, have empty planes, too
   const std::vector<std::int64_t> greatest = filterWindows(
       changes, width / 2, [](const auto& window) { return std::ranges::max(window); });
   const std::vector<std::int64_t> typical = filterWindows(greatest, width - 1, [](auto& window) {

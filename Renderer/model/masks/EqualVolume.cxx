@@ -168,25 +168,30 @@ private:
     const auto findSmooth = [&](const auto& at) {
       return m_smooth.voxels.data() + linearIndex({0, at.first, at.second}, m_smooth.grid.size);
     };
-    const Size3 last = m_labels.grid.size.array() - 1;
-    const auto findLabels = [&](const auto& at) {
-      const Size3 start = m_first + Size3(0, at.first, at.second);
-      const Size3 nearest = start.cwiseMax(0).cwiseMin(last);
-      return m_labels.voxels.data() +
-             linearIndex({0, nearest.y(), nearest.z()}, m_labels.grid.size);
+    const std::uint8_t *const a = findSmooth(row), *const b = findSmooth(other) + shift;
+    for (std::int64_t x = range.begin; x < range.end; ++x)
+      if (a[x] != 0 || b[x] != 0)
+        result.smooth.add(values[a[x]], values[b[x]]);
+    result.labels += countLabels(row, range.begin, range.end) +
+                     countLabels(other, range.begin + shift, range.end + shift);
+  }
+
+  /// Number of labels in a range of a row of the smoothed mask. Beyond them, the nearest repeats.
+  std::int64_t countLabels(const std::pair<std::int64_t, std::int64_t>& row, std::int64_t begin,
+                           std::int64_t end) const {
+    const Size3& size = m_labels.grid.size;
+    const Size3 start = m_first + Size3(0, row.first, row.second);
+    const Size3 nearest = start.cwiseMax(0).cwiseMin((size.array() - 1).matrix());
+    const std::uint8_t* const labels =
+        m_labels.voxels.data() + linearIndex({0, nearest.y(), nearest.z()}, size);
+    const std::int64_t first = m_first.x() + begin, last = m_first.x() + std::max(begin, end);
+    const auto repeat = [&](std::int64_t x, std::int64_t times) {
+      return labels[x] == m_labels.maxValue ? std::max<std::int64_t>(times, 0) : 0;
     };
-    const std::uint8_t *const a = findSmooth(row), *const b = findSmooth(other);
-    const std::uint8_t *const labelsA = findLabels(row), *const labelsB = findLabels(other);
-    const std::uint8_t threshold = m_labels.threshold();
-    for (std::int64_t x = range.begin; x < range.end; ++x) {
-      const auto labelX = [&](std::int64_t at) {
-        return std::clamp<std::int64_t>(m_first.x() + at, 0, last.x());
-      };
-      result.labels += labelsA[labelX(x)] >= threshold;
-      result.labels += labelsB[labelX(x + shift)] >= threshold;
-      if (a[x] != 0 || b[x + shift] != 0)
-        result.smooth.add(values[a[x]], values[b[x + shift]]);
-    }
+    return std::count(labels + std::clamp<std::int64_t>(first, 0, size.x()),
+                      labels + std::clamp<std::int64_t>(last, 0, size.x()), m_labels.maxValue) +
+           repeat(0, std::min<std::int64_t>(last, 0) - first) +
+           repeat(size.x() - 1, last - std::max(first, size.x()));
   }
 
   const Mask &m_labels, &m_smooth;
@@ -209,13 +214,13 @@ VoxelValues multiplyOdds(double factor) {
 } // namespace
 
 double measureVolumeChange(const Mask& labels, const Mask& smooth, const Grid& volume) {
-  const auto result = VolumeComparison(labels, smooth, findOffset(smooth, labels), volume)
-                          .measure(multiplyOdds(1.0));
-  const double before = 0.5 * static_cast<double>(result.labels);
-  const double scale = smooth.maxValue == 255 ? 1.0 : 0.0;
-  return before * scale == 0.0
-             ? labels.volumeChange
-             : (1.0 + labels.volumeChange) * result.smooth.findLength(127.5) / before - 1.0;
+  if (smooth.smoothing == 0.0)
+    return labels.volumeChange;
+  const auto [lengths, inLabels] =
+      VolumeComparison(labels, smooth, findOffset(smooth, labels), volume)
+          .measure(multiplyOdds(1.0));
+  const double before = 0.5 * static_cast<double>(inLabels) / (1.0 + labels.volumeChange);
+  return before == 0.0 ? 0.0 : lengths.findLength(127.5) / before - 1.0;
 }
 
 void equalizeVolume(const Mask& labels, const Grid& volume, Mask& smooth) {
