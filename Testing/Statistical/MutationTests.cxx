@@ -3,11 +3,13 @@
 // combination after another, until Fenestra's image differs from the oracle's as significantly
 // as the suite requires. An entry's "integrator" is the one in which it shows: "simd" (the
 // default), "scalar" or "both". Entries with "shows" affect no mean of these images; they must show
-// elsewhere: "estimated error", in the images' standard errors (ErrorRatio.h); "request", in which
-// volume a request renders; "margin", in voxels that an organ gains (OrganMargin.h).
+// elsewhere: "estimated error", in the images' standard errors (ErrorRatio.h); "labels", in
+// smoothed labels (LabelChecks.h); "request", in which volume a request renders; "margin", in
+// voxels that an organ gains (OrganMargin.h).
 
 #include "Comparison.h"
 #include "ErrorRatio.h"
+#include "LabelChecks.h"
 #include "Mutations/Mutant.h"
 #include "RunSettings.h"
 #include "model/filtering/SmoothingRequest.h"
@@ -90,7 +92,7 @@ void testEstimatedErrors(std::vector<Mutation>& mutations, double bound) {
       std::cout << mutation.name << ": in the estimated error, probability " << mutation.probability
                 << '\n';
       if (mutation.probability <= bound)
-        mutation.foundIn = "the estimated error";
+        mutation.foundIn = mutation.shows;
     }
 }
 
@@ -181,6 +183,7 @@ TEST(Mutations, AreAllFound) {
   std::vector<Mutation> mutations = readMutations();
   ASSERT_FALSE(mutations.empty());
   testEstimatedErrors(mutations, significanceLevel(count));
+  testProperty(mutations, "labels", areLabelsValid);
   testProperty(mutations, "request", areRequestsRight);
   testProperty(mutations, "margin", doesMarginOnlyRemove);
   for (const Combination& c : makeCombinations(count)) {
