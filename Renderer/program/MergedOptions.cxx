@@ -207,7 +207,8 @@ SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
   for (const Option& option : renderSyntax.options) {
     const std::string& name = option.name;
     const bool isNode = name == "volume" || name == "segmentation";
-    const std::string value = isNode ? node.referenceId(name) : findStoredValue(node, option);
+    const std::string value =
+        isNode ? node.referenceId(name) : option.resolveAlias(findStoredValue(node, option));
     if (!isImageOption(option) || value.empty() || isReplaced(option, explicitValues))
       continue;
     if (const std::string reason = findRejectionReason(input, name, value); reason.empty())

@@ -63,7 +63,6 @@ void addContrast(Json& json, const PreparedScene& scene) {
                       {"neighbour", tint->neighbor},
                       {"contextSaturation", tint->adjustment.contextSaturation},
                       {"contextLightness", tint->adjustment.contextLightness},
-                      {"focusChroma", tint->adjustment.focusChroma},
                       {"focusLightness", tint->adjustment.focusLightness},
                       {"focusAccent", tint->adjustment.focusAccent},
                       {"accent", accentColors[tint->adjustment.accent].name}});

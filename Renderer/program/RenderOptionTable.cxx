@@ -202,12 +202,16 @@ struct RenderOptionTable {
            .bind(options.smoothing, readVolumeSmoothing)
            .withDefault("auto")
            .withNamedValues({"auto", "off"})},
-      {"materials", "none|auto|library|FILE", appearanceGroup,
+      {"materials", "none|library|contrast|FILE", appearanceGroup,
        "Segment colors by material: none, library (Fenestra's), a .json file that extends the "
-       "library, or auto: library colors, adjusted so that the focus is distinguishable; opacity "
-       "and surfaces are unaffected [auto if the material of the focus is known and "
+       "library, or contrast: library colors, adjusted so that the focus is distinguishable; "
+       "opacity and surfaces are unaffected [contrast if the material of the focus is known "
+       "and "
        "--context-saturation is not given, else none]",
-       ValueSpec::text().bind(scene.materials).withNamedValues({"none", "auto", "library"}),
+       ValueSpec::text()
+           .bind(scene.materials, readWord)
+           .withNamedValues({"none", "library", "contrast"})
+           .withAliases({{"auto", "contrast"}}),
        OverrideGroup::materials},
       {"material", "TEXT", appearanceGroup,
        "Changes the material of one segment, such as \"Liver: color=#963e2e\" or \"Aorta: "

@@ -132,6 +132,11 @@ void readTexts(const OptionValues& values, const std::string& name,
   texts = values.texts(name);
 }
 
+void readWord(const OptionValues& values, const std::string& name,
+              std::optional<std::string>& word) {
+  word = values.word(name);
+}
+
 void readSwitch(const OptionValues&, const std::string&, bool& isOn) {
   isOn = true;
 }

@@ -24,6 +24,8 @@ void readSize(const OptionValues& values, const std::string& name, RenderRequest
 void readShard(const OptionValues& values, const std::string& name, RenderOptions& options);
 void readTexts(const OptionValues& values, const std::string& name,
                std::vector<std::string>& texts);
+void readWord(const OptionValues& values, const std::string& name,
+              std::optional<std::string>& word);
 void readSwitch(const OptionValues&, const std::string&, bool& isOn);
 void readLayers(const OptionValues& values, const std::string& name, LayerSet& layers);
 

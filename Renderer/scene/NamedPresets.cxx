@@ -124,19 +124,22 @@ bool isLightsFile(const std::string& name) {
   return isInlineJson(name) ? hasFileReference(name, inlineLights) : isFileName("lights", name);
 }
 
-NamedMaterials findMaterials(const std::string& name) {
+NamedMaterials findMaterials(const std::string& name,
+                             const std::optional<double>& contextSaturation) {
   if (!isMaterialsFile(name)) {
     NamedMaterials materials{materialLibrary(), name};
-    materials.table.hasContrast = materials.table.detectsSkin = name == autoMaterials;
+    materials.table.hasContrast = materials.table.detectsSkin = name == contrastMaterials;
+    if (name == libraryMaterials)
+      materials.table.context.saturation = contextSaturation;
     return materials;
   }
   if (!isExistingFile(name))
-    throw makeUnknownError(name, "none, auto, library, or a file");
+    throw makeUnknownError(name, "none, library, contrast, or a file");
   return {parseMaterials(readText(name), name, materialLibrary()), name, {name}};
 }
 
 bool isMaterialsFile(const std::string& name) {
-  return name != noMaterials && name != autoMaterials && name != "library";
+  return name != noMaterials && name != contrastMaterials && name != libraryMaterials;
 }
 
 OrganPreset findOrganPreset(const std::string& name) {

@@ -8,6 +8,7 @@
 #include "model/lights/Light.h"
 #include "scene/Input.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -59,9 +60,15 @@ struct NamedMaterials {
     return table.hasContrast || table.context.saturation || table.context.lightness;
   }
 };
-/// Materials of the library ("auto": with contrast adjustment and skin detection), or of a file
-/// whose rules precede the library's. Throws Error (input).
-NamedMaterials findMaterials(const std::string& name);
+/// Saturation of the context around a focus in the colors of the library. It sets the focus off,
+/// and no color becomes stronger than in tissue.
+inline constexpr double libraryContextSaturation = 0.75;
+
+/// Materials of the library ("contrast": with contrast adjustment and skin detection), or of a file
+/// whose rules precede the library's. `contextSaturation`: for "library", if there is a focus.
+/// Throws Error (input).
+NamedMaterials findMaterials(const std::string& name,
+                             const std::optional<double>& contextSaturation = {});
 
 /// True if findMaterials would open a file with this name.
 bool isMaterialsFile(const std::string& name);

@@ -130,13 +130,16 @@ std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segment
   if (r.materials)
     return *r.materials;
   const bool isAdjusted = !r.focus.empty() && !r.focusStyle.contextSaturation;
-  return isAdjusted && hasKnownMaterial(segments->segmentation, r.focus) ? autoMaterials
+  return isAdjusted && hasKnownMaterial(segments->segmentation, r.focus) ? contrastMaterials
                                                                          : noMaterials;
 }
 
 void PreparedScene::makeTint(const std::string& name) {
   const RenderRequest& r = m_request;
-  const auto materials = m_materials.get(name);
+  std::optional<double> saturation; // of the context; the request's applies to the final colors
+  if (!r.focus.empty())
+    saturation = r.focusStyle.contextSaturation ? 1.0 : libraryContextSaturation;
+  const auto materials = m_materials.get(name, saturation);
   const bool isAdjusted = materials->hasColorAdjustment();
   const auto hasVoxels = m_hasVoxels.get(m_segments.result());
   if (materials->table.detectsSkin)

@@ -84,7 +84,9 @@ struct ViewRequest {
 inline constexpr const char* noMaterials = "none";
 
 /// Library materials, adjusted so that the focus contrasts with its surroundings (TintContrast.h).
-inline constexpr const char* autoMaterials = "auto";
+inline constexpr const char* contrastMaterials = "contrast";
+/// Library materials; around a focus, with a context of libraryContextSaturation.
+inline constexpr const char* libraryMaterials = "library";
 
 struct RenderRequest {
   std::filesystem::path input;                  ///< a volume, a DICOM folder, or a Slicer scene
@@ -92,8 +94,8 @@ struct RenderRequest {
   std::optional<std::string> segmentation = {}; ///< node of the scene, or a file
   std::optional<std::string> labels = {};       ///< names of label values (LabelSearch.h)
   std::vector<std::string> focus = {};          ///< ids, names or label values
-  /// "none", "auto", "library", or a file. By default "auto" if a focus segment has a known
-  /// material and no context saturation is given, else "none".
+  /// "none", "library", "contrast", or a file. By default "contrast" if a focus segment has a
+  /// known material and no context saturation is given, else "none".
   std::optional<std::string> materials = {};
   std::vector<std::string> materialChanges = {}; ///< arguments of parseMaterialChange
   std::optional<std::string> transfer =

@@ -17,13 +17,14 @@ constexpr std::size_t maxComponents = 256; ///< a component index is one byte
 constexpr const char* skinMaterial = "skin";
 constexpr int skinPriority = 1;
 
-/// Material of each segment after the changes. If contrast is adjusted, palette colors are dropped.
+/// Material of each segment after the changes. Around a focus whose colors are adjusted, segments
+/// have no palette colors, which would be the loudest of the image.
 std::vector<SegmentMaterial> collectMaterials(const Segmentation& segmentation,
                                               const NamedMaterials& materials,
                                               const std::vector<std::string>& changes) {
   const std::vector<SegmentInfo>& segments = segmentation.segments();
   std::vector<SegmentMaterial> all = assignMaterials(segments, materials.table);
-  if (materials.table.hasContrast)
+  if (materials.hasColorAdjustment())
     for (SegmentMaterial& material : all)
       if (material.isFromPalette)
         material.medium.material = {};

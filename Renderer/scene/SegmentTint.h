@@ -40,7 +40,7 @@ std::vector<bool> findNonEmpty(const Handle<SegmentsInput>& segments);
 
 /// Makes one component per distinct medium of the non-empty segments; if colors are adjusted, the
 /// focus gets components of its own. `hasVoxels`: from findNonEmpty(). `changes`: values of
-/// --material, which override the table. With contrast adjustment, a segment with a palette color
+/// --material, which override the table. If colors are adjusted, a segment with a palette color
 /// keeps the volume's own colors. `focus`: ids, names or label values. `skin`: from findSkin();
 /// null or empty: none; ignored if a segment is skin. Throws Error (input) for a change to an
 /// unknown segment, for context colors without a focus, if no segment has a voxel, and for more

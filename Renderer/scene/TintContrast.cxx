@@ -7,7 +7,7 @@
 #include "model/medium/Reflectance.h"
 
 #include <algorithm>
-#include <functional>
+#include <utility>
 
 namespace fenestra {
 namespace {
@@ -33,18 +33,29 @@ Rgb reduceToGamut(const Lab& lab) {
 }
 
 /// Decrease of L* of the context at the edge: where it faces the light, and in a groove that the
-/// focus shades. These values and those in toImageColor() were fitted by hand to mean colors 3 to 8
-/// pixels from the edges of seven foci (abdomen, knee, torso; AppearanceBenchmark) with the cinema
-/// lights and the film tone curve.
+/// focus shades. These values and the next ones were fitted by hand to mean colors 3 to 8 pixels
+/// from the edges of eight foci (abdomen, torso; AppearanceBenchmark) with the lights of an
+/// operating theater, a wet coat, natural colors and the film tone curve.
 constexpr std::array contextShading = {-3.0, 4.0};
 
-/// Linear color of a medium at the edge, as it appears in an image. Shadows and specular
-/// reflections leave less than half of the lightness differences.
+/// Lightness of a medium at the edge, as it appears in an image. Shadows and specular reflections
+/// reduce lightness differences.
+double toImageLightness(double L) {
+  return 14.0 + 0.73 * L;
+}
+
+/// Factor of the chroma in an image.
+double toImageSaturation(double L) {
+  return 0.89 * toImageLightness(L) / std::max(L, 1.0);
+}
+
+/// Linear color of a medium at the edge, as it appears in an image.
 Rgb toImageColor(const Rgb& reflectance, double shade) {
-  constexpr double darkest = 29.0, lightness = 0.43, saturation = 0.62;
   const Lab lab = toLab(reflectance);
-  const double L = darkest + lightness * lab.L, chroma = saturation * L / std::max(lab.L, 1.0);
-  return toLinear({L - shade, chroma * lab.a, chroma * lab.b}).max(0.0).min(1.0);
+  const double saturation = toImageSaturation(lab.L);
+  return toLinear({toImageLightness(lab.L) - shade, saturation * lab.a, saturation * lab.b})
+      .max(0.0)
+      .min(1.0);
 }
 
 /// Albedo of a component as a function of the scalar.
@@ -53,100 +64,60 @@ const ColorFunction& albedoOf(const std::optional<ColorFunction>& own,
   return own ? *own : transfer.albedo;
 }
 
-/// Saturation of the context at the start, limits of the adjustment, and the CIELAB color
-/// difference whose cost equals a score of 1.
-struct Limits {
-  double saturationStart;
-  double saturation, lightness, shift, chroma, accent;
-  double changeScale;
-};
-/// `gentle` stays within tissue colors. `strong` leaves them, for a focus in similar tissue (bowel
-/// in bowel, one vertebra on another).
-constexpr Limits gentle{0.6, 0.5, 0.35, 12.0, 1.4, 0.35, 300.0},
-    strong{1.0, 0.3, 0.5, 18.0, 1.7, 0.6, 600.0};
-
 /// Increases the adjustment until the interface has enough contrast.
 class AdjustmentSearch {
 public:
   AdjustmentSearch(const std::vector<InterfaceColors>& colors, const ColorAdjustment& start,
-                   double changeScale, double saturation, double g)
+                   double saturation, double g)
       : m_colors(&colors),
-        m_changeScale(changeScale),
         m_saturation(saturation),
         m_g(g),
-        m_start(start),
         m_adjustment(start),
         m_score(computeScore(start)) {}
 
   const ColorAdjustment& adjustment() const { return m_adjustment; }
-  double score() const { return m_score; }
 
-  /// Increases a member in steps, from its current value to at most `limit`.
+  /// Increases a member in steps, from its current value to at most `limit`, to the first value
+  /// with a sufficient score, or the one with the best.
   void increase(double ColorAdjustment::*member, double limit) {
-    const double first = m_adjustment.*member;
-    for (int i = 1; i <= steps && m_score < sufficientScore; ++i)
-      tryValue(member, first + (limit - first) * i / steps,
-               [this](double score) { return score > m_score; });
+    constexpr int steps = 20;
+    ColorAdjustment candidate = m_adjustment;
+    const double first = candidate.*member;
+    for (int i = 1; i <= steps && m_score < sufficientScore; ++i) {
+      candidate.*member = first + (limit - first) * i / steps;
+      const double score = computeScore(candidate);
+      if (score > m_score) {
+        m_adjustment = candidate;
+        m_score = score;
+      }
+    }
   }
 
-  /// Moves all members back toward the start, last to first, as long as the score stays sufficient.
-  /// Repeats this, since one relaxed member may allow another to relax further.
-  void relax() {
-    ColorAdjustment before;
-    do {
-      before = m_adjustment;
-      for (const auto member :
-           {&ColorAdjustment::focusAccent, &ColorAdjustment::focusChroma,
-            &ColorAdjustment::focusLightness, &ColorAdjustment::contextLightness,
-            &ColorAdjustment::contextSaturation})
-        relax(member);
-    } while (!(m_adjustment == before));
-  }
-
-  /// Blends the focus with the best accent color, if one improves the net score. Only accents of
-  /// similar lightness are tried: a pale organ in dark red would look like muscle.
+  /// Blends the focus with the best accent color. Only accents of similar lightness are tried: a
+  /// pale organ in dark red would look like muscle.
   void addAccent(double limit) {
-    constexpr double maxDifference = 40.0;
+    constexpr double maxDifference = 30.0;
     const double own = mean([](const InterfaceColors& part) { return toLab(part.focus).L; });
-    AdjustmentSearch best = *this;
-    for (std::size_t i = 0; i < accentColors.size() && m_score < sufficientScore; ++i) {
+    const AdjustmentSearch before = *this;
+    for (std::size_t i = 0; i < accentColors.size(); ++i) {
       if (std::abs(toLab(decodeSrgb(hexToRgb(accentColors[i].color))).L - own) > maxDifference)
         continue;
-      AdjustmentSearch candidate = *this;
+      AdjustmentSearch candidate = before;
       candidate.m_adjustment.accent = i;
       candidate.increase(&ColorAdjustment::focusAccent, limit);
-      if (candidate.isBetterThan(best))
-        best = candidate;
+      if (candidate.isBetterThan(*this))
+        *this = candidate;
     }
-    m_adjustment = best.m_adjustment;
-    m_score = best.m_score;
   }
 
-  /// True if its score, less the cost of its color change, is higher.
-  bool isBetterThan(const AdjustmentSearch& other) const { return netScore() > other.netScore(); }
+  /// True if its score is higher, or sufficient with a smaller change of the focus.
+  bool isBetterThan(const AdjustmentSearch& other) const { return rank() > other.rank(); }
 
 private:
-  static constexpr int steps = 20;
-
-  void relax(double ColorAdjustment::*member) {
-    const double last = m_adjustment.*member, needed = std::min(m_score, sufficientScore);
-    for (int i = 1; i <= steps; ++i)
-      if (!tryValue(member, last + (m_start.*member - last) * i / steps,
-                    [needed](double score) { return score >= needed; }))
-        return;
+  std::array<double, 3> rank() const {
+    return {std::min(m_score, sufficientScore), -m_adjustment.focusAccent,
+            -std::abs(m_adjustment.focusLightness)};
   }
-
-  bool tryValue(double ColorAdjustment::*member, double value, const auto& accept) {
-    ColorAdjustment candidate = m_adjustment;
-    candidate.*member = value;
-    const double score = computeScore(candidate);
-    if (!accept(score))
-      return false;
-    m_adjustment = candidate;
-    m_score = score;
-    return true;
-  }
-
   /// Mean of a function over the interface, weighted by area.
   double mean(const auto& function) const {
     double sum = 0.0, area = 0.0;
@@ -161,18 +132,10 @@ private:
       return contrastScore(measureAdjustedContrast(adjustment, part, m_saturation, m_g));
     });
   }
-  double netScore() const { return std::min(m_score, sufficientScore) - change() / m_changeScale; }
-  /// Mean color difference from the original colors, summed over both sides.
-  double change() const {
-    return mean([&](const InterfaceColors& part) {
-      return deltaE76(toLab(part.focus), toLab(adjustFocus(part.focus, m_adjustment))) +
-             deltaE76(toLab(part.context), toLab(adjustContext(part.context, m_adjustment)));
-    });
-  }
 
   const std::vector<InterfaceColors>* m_colors;
-  double m_changeScale, m_saturation, m_g;
-  ColorAdjustment m_start, m_adjustment;
+  double m_saturation, m_g;
+  ColorAdjustment m_adjustment;
   double m_score;
 };
 
@@ -189,21 +152,28 @@ std::vector<ComponentInterface> selectMajor(std::vector<ComponentInterface> inte
 } // namespace
 
 Rgb adjustContext(const Rgb& reflectance, const ColorAdjustment& adjustment) {
+  constexpr double white = 100.0;
   const Lab lab = toLab(reflectance);
-  return reduceToGamut({lab.L + adjustment.contextLightness * (adjustment.contextGoal - lab.L),
+  return reduceToGamut({lab.L + adjustment.contextLightness * (white - lab.L),
                         adjustment.contextSaturation * lab.a,
                         adjustment.contextSaturation * lab.b});
 }
 
 Rgb adjustFocus(const Rgb& reflectance, const ColorAdjustment& adjustment) {
+  constexpr double maxChroma = 45.0;
   const Lab lab = toLab(reflectance),
             accent = toLab(decodeSrgb(hexToRgb(accentColors[adjustment.accent].color)));
   const auto mix = [&](double own, double other) {
     return own + adjustment.focusAccent * (other - own);
   };
-  return reduceToGamut({mix(lab.L + adjustment.focusLightness, accent.L),
-                        mix(adjustment.focusChroma * lab.a, accent.a),
-                        mix(adjustment.focusChroma * lab.b, accent.b)});
+  const Lab mixed{mix(lab.L + adjustment.focusLightness, accent.L), mix(lab.a, accent.a),
+                  mix(lab.b, accent.b)};
+  const auto imageChroma = [](const Lab& color) {
+    return toImageSaturation(color.L) * std::hypot(color.a, color.b);
+  };
+  const double chroma = imageChroma(mixed), limit = std::max(maxChroma, imageChroma(lab));
+  const double factor = chroma > limit ? limit / chroma : 1.0;
+  return reduceToGamut({mixed.L, factor * mixed.a, factor * mixed.b});
 }
 
 double contrastScore(const Contrast& contrast) {
@@ -231,43 +201,27 @@ Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const Interf
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable,
                                  double saturation, double g) {
-  constexpr double white = 100.0, bright = 72.0, dim = 40.0; // L* of the context
-  ColorAdjustment start;
-  start.contextSaturation = context.saturation.value_or(start.contextSaturation);
-  if (context.lightness) {
-    start.contextLightness = *context.lightness;
-    start.contextGoal = white;
-  }
+  constexpr double minSaturation = 0.4, maxShift = 25.0, maxAccent = 0.6;
+  const bool isFocusAdjustable = adjustable == Adjustable::both;
+  ColorAdjustment start{.contextSaturation = context.saturation.value_or(1.0),
+                        .contextLightness = context.lightness.value_or(0.0)};
   if (adjustable == Adjustable::nothing || colors.empty())
     return start;
-  const auto search = [&](const Limits& limits, double shift, double goal) {
-    if (!context.lightness)
-      start.contextGoal = goal;
-    if (!context.saturation && adjustable == Adjustable::both)
-      start.contextSaturation = limits.saturationStart;
-    AdjustmentSearch result(colors, start, limits.changeScale, saturation, g);
-    if (!context.saturation)
-      result.increase(&ColorAdjustment::contextSaturation,
-                      adjustable == Adjustable::both ? limits.saturation : 0.0);
-    if (!context.lightness)
-      result.increase(&ColorAdjustment::contextLightness, limits.lightness);
-    if (adjustable == Adjustable::both) {
-      result.increase(&ColorAdjustment::focusLightness, shift);
-      result.increase(&ColorAdjustment::focusChroma, limits.chroma);
-      result.addAccent(limits.accent);
-    }
-    result.relax();
-    return result;
-  };
-  // A darker focus in a bright context, and the reverse.
-  const auto darker = [&](const Limits& limits) { return search(limits, -limits.shift, bright); };
-  const auto lighter = [&](const Limits& limits) { return search(limits, limits.shift, dim); };
-  const AdjustmentSearch dark = darker(gentle), light = lighter(gentle);
-  const bool isLight = light.isBetterThan(dark);
-  const AdjustmentSearch& tissue = isLight ? light : dark;
-  if (tissue.score() >= nearlySufficient)
-    return tissue.adjustment();
-  return (isLight ? lighter(strong) : darker(strong)).adjustment();
+  if (!context.saturation && isFocusAdjustable)
+    start.contextSaturation = libraryContextSaturation;
+  AdjustmentSearch darker(colors, start, saturation, g);
+  if (!context.saturation)
+    darker.increase(&ColorAdjustment::contextSaturation,
+                    isFocusAdjustable ? minSaturation : 0.0);
+  if (!isFocusAdjustable)
+    return darker.adjustment();
+  AdjustmentSearch lighter = darker;
+  for (const auto& [search, shift] :
+       {std::pair(&darker, -maxShift), std::pair(&lighter, maxShift)}) {
+    search->increase(&ColorAdjustment::focusLightness, shift);
+    search->addAccent(maxAccent);
+  }
+  return (lighter.isBetterThan(darker) ? lighter : darker).adjustment();
 }
 
 TintContrast adjustContrast(const std::vector<ComponentInterface>& interfaces, const TintPlan& plan,
@@ -313,10 +267,9 @@ std::string summary(const TintContrast& chosen) {
       text += concat("; ", what, " ", toString(std::abs(adjustment.*member), 3));
   };
   add("surroundings' saturation times", &ColorAdjustment::contextSaturation);
-  add("surroundings' lightness evened by", &ColorAdjustment::contextLightness);
+  add("surroundings lightened by", &ColorAdjustment::contextLightness);
   add(adjustment.focusLightness < 0.0 ? "focus darkened by" : "focus lightened by",
       &ColorAdjustment::focusLightness);
-  add("focus's saturation times", &ColorAdjustment::focusChroma);
   add(concat("focus blended with ", accentColors[adjustment.accent].name, " by"),
       &ColorAdjustment::focusAccent);
   return text;

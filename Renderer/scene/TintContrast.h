@@ -15,12 +15,10 @@ namespace fenestra {
 /// Change of the reflected colors of thick media, in CIELAB.
 struct ColorAdjustment {
   double contextSaturation = 1.0; ///< factor of the context's chroma
-  double contextLightness = 0.0;  ///< blend weight toward the lightness `contextGoal`
-  double contextGoal = 72.0;
-  double focusLightness = 0.0; ///< shift of L*
-  double focusChroma = 1.0;    ///< factor
-  double focusAccent = 0.0;    ///< blend weight toward the color `accent`
-  std::size_t accent = 0;      ///< index in `accentColors`
+  double contextLightness = 0.0;  ///< blend weight toward white
+  double focusLightness = 0.0;    ///< shift of L*
+  double focusAccent = 0.0;       ///< blend weight toward the color `accent`
+  std::size_t accent = 0;         ///< index in `accentColors`
 
   bool operator==(const ColorAdjustment&) const = default;
 };
@@ -30,12 +28,13 @@ struct AccentColor {
   const char* name;
   std::uint32_t color; ///< sRGB, 0xrrggbb
 };
-inline constexpr std::array accentColors = {AccentColor{"yellow", 0xebbe3c},
+inline constexpr std::array accentColors = {AccentColor{"yellow", 0xe3bf71},
                                             AccentColor{"ice", 0xbfe6f2},
-                                            AccentColor{"dark red", 0x7c1e22}};
+                                            AccentColor{"dark red", 0x712223}};
 
 /// Applies the adjustment to a linear reflected color. The result is at most maxReflectance; its
-/// chroma is reduced where it would leave the display gamut.
+/// chroma is reduced where it would leave the display gamut. The focus's chroma in an image does
+/// not rise above 45.
 Rgb adjustContext(const Rgb& reflectance, const ColorAdjustment& adjustment);
 Rgb adjustFocus(const Rgb& reflectance, const ColorAdjustment& adjustment);
 
@@ -52,8 +51,6 @@ struct InterfaceColors {
 double contrastScore(const Contrast& contrast);
 /// The search stops at this score: the remaining difference is invisible.
 inline constexpr double sufficientScore = 0.995;
-/// Below this score (a difference of 19 of 22), colors may leave the range of natural tissue.
-inline constexpr double nearlySufficient = 0.966;
 
 /// CIELAB contrast of the adjusted colors across the focus edge in an image: the smaller of the
 /// contrasts in the light and in a groove that the focus shades. `saturation`: of the context's
@@ -65,14 +62,12 @@ Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const Interf
 /// the volume's colors.
 enum class Adjustable { nothing, context, both };
 
-/// Finds the adjustment whose score, as the mean over the interface area, reaches sufficientScore.
-/// The members are increased in their order of declaration, each only as far as needed, or to its
-/// best score within its limit. Then they are relaxed in reverse order as long as the score does
-/// not drop. The context starts at a saturation of 0.6, which also needs fewer collisions. If the
-/// score stays below nearlySufficient, the search starts again at full saturation with wider
-/// limits. A darker focus in a lighter context and the reverse are both tried; the higher score,
-/// less the cost of the color change, wins. `context`: members that it sets stay fixed. If the
-/// focus is not adjustable, the context may become gray. Without `colors`, nothing is adjusted.
+/// Finds the adjustment whose score, as the mean over the interface area, reaches sufficientScore,
+/// or the best within the limits. In this order, each only as far as needed: the context's
+/// saturation falls from the library's to 0.4; the focus becomes darker or lighter by at most 25;
+/// it is blended with an accent color by at most 0.6. `context`: members that it sets stay fixed.
+/// If the focus is not adjustable, the context may become gray. Without `colors`, nothing is
+/// adjusted.
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable,
                                  double saturation, double g);

@@ -18,7 +18,7 @@ torso="$data/torso_ct_ccth_a01/ct.nii.gz --segmentation $data/torso_ct_ccth_a01/
 cat >"$page" <<'END'
 ## Segment colors
 
-Written by `materials.sh` with `--materials auto`: the library's [colors](../materials/README.md), adjusted just enough that
+Written by `materials.sh` with `--materials contrast`: the library's [colors](../materials/README.md), adjusted just enough that
 the focus is distinguishable from its surroundings. Right: a simulation of deuteranopia (Machado, Oliveira, Fernandes
 2009). The contrasts are [measured](../../Testing/Benchmarks/README.md) in CIELAB at 512 × 512 across the edge of the focus: ΔE
 for normal, protan and deutan vision, and ΔL*. The targets are 20, 12, 12 and 8.
@@ -43,9 +43,9 @@ show() {
   printf '\n![%s](%s.jpg)\n**%s.** %s\n`%s`\n' "$2" "$name" "$2" "$3" "${4//$data\//}" >>"$page"
 }
 
-# show_contrast NAME TITLE "TEXT" "ARGUMENTS": show with --materials auto and the measured contrast.
+# show_contrast NAME TITLE "TEXT" "ARGUMENTS": show with --materials contrast and the measured contrast.
 show_contrast() {
-  local all="$4 --materials auto"
+  local all="$4 --materials contrast"
   show "$1" "$2" "$3 Contrast: $(measure_contrast "$all")." "$all"
 }
 

@@ -24,7 +24,7 @@ using Change = SlicerExport::MaterialChange;
 enum Column { nameColumn, materialColumn, colorColumn, clipColumn, resetColumn, columns };
 
 // Sources of materials: values of --materials, and two that stand for other values.
-const QString none = "none", automaticSource = "auto", library = "library";
+const QString none = "none", contrastSource = "contrast", library = "library";
 const QString fileSource = "file", manualSource = "hand";
 
 /// Ignores the wheel, which then scrolls the table instead of changing a material unnoticed.
@@ -78,7 +78,7 @@ qSlicerFenestraMaterials::qSlicerFenestraMaterials(QWidget* parent)
     : QWidget(parent), d_ptr(new qSlicerFenestraMaterialsPrivate) {
   Q_D(qSlicerFenestraMaterials);
   d->setupUi(this);
-  setItemData(d->MaterialsBox, {"", none, automaticSource, library, fileSource, manualSource});
+  setItemData(d->MaterialsBox, {"", none, library, contrastSource, fileSource, manualSource});
   d->manualText = d->MaterialsBox->itemText(d->MaterialsBox->findData(manualSource));
   buildTable();
   connect(d->MaterialsBox, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this, d] {
@@ -181,7 +181,7 @@ qFenestraMaterial qSlicerFenestraMaterialsPrivate::findAutomatic(const QString& 
   const bool isUnknown = word != library && one.why == "by palette";
   if (word == none || isUnknown)
     return {{}, {}, tr("the volume's own colors"), true};
-  if (!QStringList{"", automaticSource, library}.contains(word))
+  if (!QStringList{"", contrastSource, library}.contains(word))
     return {{}, {}, tr("from the file"), true};
   return one;
 }
@@ -200,9 +200,9 @@ QString qSlicerFenestraMaterialsPrivate::findColor(const QString& segment) const
 }
 
 void qSlicerFenestraMaterialsPrivate::showSource() {
-  const QString base = baseFlag == library           ? tr("the library")
-                       : baseFlag == automaticSource ? tr("the automatic choice")
-                                                     : QFileInfo(baseFlag).fileName();
+  const QString base = baseFlag == library          ? tr("the library")
+                       : baseFlag == contrastSource ? tr("contrast")
+                                                    : QFileInfo(baseFlag).fileName();
   MaterialsBox->setItemText(MaterialsBox->findData(manualSource),
                             baseFlag.isEmpty() ? manualText : tr("Manual, based on %1").arg(base));
   qSlicerFenestraWidgets::showRow(Form, MaterialsFileRow, source() == fileSource);
@@ -268,13 +268,13 @@ void qSlicerFenestraMaterials::change(int row, const std::map<std::string, QStri
   onSource();
 }
 
-/// Remembers the materials to which manual changes apply; by default the automatic ones.
+/// Remembers the materials to which manual changes apply; by default the library.
 void qSlicerFenestraMaterials::onSource() {
   Q_D(qSlicerFenestraMaterials);
   if (d->source() != manualSource)
     d->baseFlag = d->base();
   else if (d->baseFlag.isEmpty() || d->baseFlag == none)
-    d->baseFlag = automaticSource;
+    d->baseFlag = library;
   d->showSource();
   emit changed();
 }
@@ -344,7 +344,8 @@ void qSlicerFenestraMaterialsPrivate::setChanges(const std::vector<std::string>&
 
 void qSlicerFenestraMaterials::show(const Flags& flags) {
   Q_D(qSlicerFenestraMaterials);
-  const QString given = findFlag(flags, "materials");
+  const QString stored = findFlag(flags, "materials"),
+                given = stored == "auto" ? contrastSource : stored; // its former name
   const auto texts = SlicerExport::splitList(findFlag(flags, "material").toStdString());
   const bool isManual = !texts.empty() || (d->source() == manualSource && given == d->baseFlag);
   const bool isFile = !given.isEmpty() && d->MaterialsBox->findData(given) < 0;

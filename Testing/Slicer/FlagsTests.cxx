@@ -171,10 +171,10 @@ TEST(SlicerFlags, ChangesToMissingSegmentsAreRemoved) {
   const std::string value = SlicerExport::joinList(
       {change("S,1"), change("gone"), change("Aorta"), change("7"), change("8")});
   EXPECT_EQ(
-      SlicerExport::filterMaterialFlags(segments, {{"materials", "auto"}, {"material", value}}),
-      (Flags{{"materials", "auto"},
+      SlicerExport::filterMaterialFlags(segments, {{"materials", "contrast"}, {"material", value}}),
+      (Flags{{"materials", "contrast"},
              {"material", SlicerExport::joinList({change("S,1"), change("Aorta"), change("7")})}}));
-  EXPECT_EQ(SlicerExport::filterMaterialFlags({}, {{"materials", "auto"}, {"material", value}}),
+  EXPECT_EQ(SlicerExport::filterMaterialFlags({}, {{"materials", "contrast"}, {"material", value}}),
             Flags());
   EXPECT_EQ(SlicerExport::filterMaterialFlags({}, {{"view", "left"}}), (Flags{{"view", "left"}}));
 }

@@ -148,7 +148,7 @@ TEST_F(SlicerMaterials, RendererReportsItsChoicesAndItsLibrary) {
 
 TEST_F(SlicerMaterials, SourceIsOneFlagWithoutChanges) {
   EXPECT_TRUE(arguments().empty()) << "defaults are not flags";
-  for (const char* word : {"none", "auto", "library"}) {
+  for (const char* word : {"none", "library", "contrast"}) {
     choose(word);
     EXPECT_EQ(arguments(), (Strings{std::string("--materials=") + word}));
     EXPECT_EQ(widget().isEnabled(), word != std::string("none"));
@@ -173,7 +173,7 @@ TEST_F(SlicerMaterials, OnlyChangesAreArguments) {
   setClip(1, false);
   EXPECT_EQ(changes, 1);
   EXPECT_EQ(chosen(), "hand");
-  EXPECT_EQ(arguments(), (Strings{"--material=" + awkward + ": clip=no", "--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--material=" + awkward + ": clip=no", "--materials=library"}));
   choose("library");
   EXPECT_EQ(arguments(), (Strings{"--materials=library"}));
   setMaterial(0, "spleen");
@@ -201,7 +201,7 @@ TEST_F(SlicerMaterials, TextsOfASceneAreEscaped) {
   hostile.bySegment["Segment_1"].why = "<img src='file:///etc/passwd'>";
   table.setKnownMaterials(hostile);
   EXPECT_TRUE(cell<QComboBox>(0, material).toolTip().contains("&lt;img"));
-  table.show({{"materials", "auto"}, {"material", "Segment_1: color=<b>red</b>"}});
+  table.show({{"materials", "contrast"}, {"material", "Segment_1: color=<b>red</b>"}});
   EXPECT_EQ(shownColor(0), "#963e2e");
   EXPECT_FALSE(cell<QToolButton>(0, color).toolTip().contains("<b>"));
 }
@@ -212,7 +212,7 @@ TEST_F(SlicerMaterials, UnknownSegmentKeepsTheVolumesColors) {
   table.setKnownMaterials(palette);
   choose("library");
   EXPECT_EQ(shownColor(2), "#3366cc");
-  for (const char* word : {"auto", "none"}) {
+  for (const char* word : {"contrast", "none"}) {
     choose(word);
     EXPECT_EQ(shownColor(2), "...") << word;
   }
@@ -224,9 +224,9 @@ TEST_F(SlicerMaterials, ClipFollowsTheAutomaticChoice) {
   table.setKnownMaterials(unclipped);
   EXPECT_FALSE(isClipped(0));
   setClip(0, true);
-  EXPECT_EQ(arguments(), (Strings{"--material=Segment_1: clip=yes", "--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--material=Segment_1: clip=yes", "--materials=library"}));
   setClip(0, false);
-  EXPECT_EQ(arguments(), (Strings{"--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--materials=library"}));
 }
 
 TEST_F(SlicerMaterials, CancelledDialogChangesNothing) {
@@ -250,7 +250,7 @@ TEST_F(SlicerMaterials, RowsFollowTheSegments) {
   EXPECT_EQ(widget().rowCount(), 2);
   EXPECT_EQ(text(0), "<b>Aorta</b>");
   EXPECT_FALSE(isClipped(0));
-  EXPECT_EQ(arguments(), (Strings{"--material=" + awkward + ": clip=no", "--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--material=" + awkward + ": clip=no", "--materials=library"}));
   table.list(toPanelSegments(makeSegments())); // restored, as by Undo
   EXPECT_EQ(arguments(), both);
   table.list({});
@@ -266,19 +266,19 @@ TEST_F(SlicerMaterials, ShownFlagsAreWrittenUnchanged) {
            {{"materials", "none"}},
            {{"materials", "library"}},
            {{"materials", "/data/mine.json"}},
-           {{"materials", "auto"}, {"material", SlicerExport::joinList({own})}},
+           {{"materials", "contrast"}, {"material", SlicerExport::joinList({own})}},
            {{"materials", "/data/mine.json"}, {"material", SlicerExport::joinList({other})}},
            {{"materials", "library"}, {"material", SlicerExport::joinList({own, other})}},
-           {{"materials", "auto"}, {"material", "Segment_3: material=of a file"}},
+           {{"materials", "contrast"}, {"material", "Segment_3: material=of a file"}},
            {{"material", "Segment_3: clip=no"}}}) { // without `materials`: left to the user
     table.show(flags);
     EXPECT_EQ(takeFlags(), flags);
     EXPECT_EQ(chosen() == "hand", flags.count("material") > 0);
   }
-  table.show({{"materials", "auto"}, {"material", "Segment_3: material=of a file"}});
+  table.show({{"materials", "contrast"}, {"material", "Segment_3: material=of a file"}});
   EXPECT_EQ(cell<QComboBox>(2, material).currentData().toString(), "of a file");
   table.show({{"materials", "auto"}});
-  EXPECT_EQ(arguments(), (Strings{"--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--materials=contrast"})) << "the former name";
 }
 
 TEST_F(SlicerMaterials, FlagsMayBeShownBeforeTheSegments) {
@@ -420,7 +420,7 @@ TEST_F(SlicerMaterials, ResetRemovesAllChanges) {
   table.reset();
   EXPECT_TRUE(arguments().empty());
   choose("hand");
-  EXPECT_EQ(arguments(), (Strings{"--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--materials=library"}));
 }
 
 } // namespace

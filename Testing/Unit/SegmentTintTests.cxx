@@ -31,7 +31,8 @@ Handle<NamedMaterials> makeMaterials(const std::string& json) {
 }
 
 const Handle<NamedMaterials> library = std::make_shared<NamedMaterials>(findMaterials("library"));
-const Handle<NamedMaterials> automatic = std::make_shared<NamedMaterials>(findMaterials("auto"));
+const Handle<NamedMaterials> contrast =
+    std::make_shared<NamedMaterials>(findMaterials("contrast"));
 
 TintPlan makePlan(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
                   const std::vector<std::string>& changes = {},
@@ -54,8 +55,8 @@ TEST(SegmentTint, MakesOnePartPerColorAndPriority) {
 }
 
 TEST(SegmentTint, DoesNotDependOnTheOrderInTheFile) {
-  const TintPlan one = makePlan(makeRow({"spleen", "aorta", "liver"}), automatic, {}, {"liver"}),
-                 other = makePlan(makeRow({"liver", "spleen", "aorta"}), automatic, {}, {"liver"});
+  const TintPlan one = makePlan(makeRow({"spleen", "aorta", "liver"}), contrast, {}, {"liver"}),
+                 other = makePlan(makeRow({"liver", "spleen", "aorta"}), contrast, {}, {"liver"});
   EXPECT_EQ(one.names, other.names);
   EXPECT_EQ(one.isFocus, other.isFocus);
 }
@@ -76,12 +77,12 @@ TEST(SegmentTint, ChangedSegmentGetsItsOwnComponent) {
 /// rest has the same color.
 TEST(SegmentTint, FocusIsSeparateIfContrastIsAdjusted) {
   const auto segments = makeRow({"kidney_left", "kidney_right", "aorta", "body", "Thing"});
-  const TintPlan one = makePlan(segments, automatic, {}, {"kidney_right"});
+  const TintPlan one = makePlan(segments, contrast, {}, {"kidney_right"});
   EXPECT_EQ(one.names,
             (std::vector<std::string>{"the rest", "aorta", "kidney_left", "kidney_right"}));
   EXPECT_EQ(one.isFocus, (std::vector<bool>{false, false, false, true}));
   EXPECT_EQ(one.parts, (Parts{{{4}, 10, 0}, {{2}, 15, 1}, {{0}, 10, 2}, {{1}, 10, 3, true}}));
-  const TintPlan both = makePlan(segments, automatic, {}, {"1", "body", "id1"});
+  const TintPlan both = makePlan(segments, contrast, {}, {"1", "body", "id1"});
   EXPECT_EQ(both.names, (std::vector<std::string>{"the rest", "aorta", "body", "kidney"}));
   EXPECT_EQ(both.isFocus, (std::vector<bool>{false, false, true, true}));
   EXPECT_FALSE(both.components[2].material.color) << "the volume's own color";
@@ -93,8 +94,8 @@ TEST(SegmentTint, FocusIsSeparateIfContrastIsAdjusted) {
 TEST(SegmentTint, AutoColorsOnlyKnownSegments) {
   const auto segments = makeRow({"liver", "Thing", "Other"});
   EXPECT_EQ(makePlan(segments, library).components.size(), 4U);
-  EXPECT_EQ(makePlan(segments, automatic).components.size(), 2U);
-  const TintPlan requested = makePlan(segments, automatic, {"Thing: color=#00ff00"});
+  EXPECT_EQ(makePlan(segments, contrast).components.size(), 2U);
+  const TintPlan requested = makePlan(segments, contrast, {"Thing: color=#00ff00"});
   EXPECT_EQ(requested.components.size(), 3U);
 }
 
@@ -264,7 +265,7 @@ Handle<Mask> makeSkin(const Grid& grid) {
 TEST(SegmentTint, DetectedSkinIsAPartWithoutSegment) {
   const auto segments = makeRow({"liver", "spleen"});
   const Grid& grid = segments->segmentation.grid();
-  const TintPlan plan = makePlan(segments, automatic, {}, {"liver"}, makeSkin(grid));
+  const TintPlan plan = makePlan(segments, contrast, {}, {"liver"}, makeSkin(grid));
   EXPECT_EQ(plan.parts, (Parts{{{0}, 10, 1, true}, {{1}, 10, 2}, {{}, 1, 3}}));
   EXPECT_EQ(plan.names.back(), "skin");
   EXPECT_TRUE(plan.hasDetectedSkin());
@@ -281,11 +282,11 @@ TEST(SegmentTint, DetectedSkinIsAPartWithoutSegment) {
   EXPECT_EQ(sumSkinWeight(1.0), 0.0);
 
   EXPECT_FALSE(
-      makePlan(segments, automatic, {}, {"liver"}, std::make_shared<Mask>()).hasDetectedSkin());
-  EXPECT_FALSE(makePlan(segments, automatic, {}, {"liver"}).hasDetectedSkin());
-  EXPECT_FALSE(makePlan(makeRow({"liver", "skin"}), automatic, {}, {"liver"}, makeSkin(grid))
+      makePlan(segments, contrast, {}, {"liver"}, std::make_shared<Mask>()).hasDetectedSkin());
+  EXPECT_FALSE(makePlan(segments, contrast, {}, {"liver"}).hasDetectedSkin());
+  EXPECT_FALSE(makePlan(makeRow({"liver", "skin"}), contrast, {}, {"liver"}, makeSkin(grid))
                    .hasDetectedSkin());
-  EXPECT_TRUE(makePlan(makeRow({"body"}), automatic, {}, {}, makeSkin(grid)).hasDetectedSkin());
+  EXPECT_TRUE(makePlan(makeRow({"body"}), contrast, {}, {}, makeSkin(grid)).hasDetectedSkin());
 }
 
 TEST(SegmentTint, AlbedoIsUsedUnchanged) {

@@ -48,7 +48,7 @@ int chooseMaterial(const Panel& panel) {
   QComboBox& material = *findMaterial(panel, 0);
   CHECK_BOOL(waitFor([&] { return material.count() > 20; }), true);
   material.setCurrentIndex(material.findData("spleen"));
-  CHECK_STD_STRING(panel.flag("materials"), "auto");
+  CHECK_STD_STRING(panel.flag("materials"), "library");
   CHECK_STD_STRING(panel.flag("material"), panel.settings()->GetFocus()[0] + ": material=spleen");
   return EXIT_SUCCESS;
 }
@@ -88,7 +88,7 @@ int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   CHECK_INT(focus.item(0)->checkState(), Qt::Checked);
   CHECK_STD_STRING(panel.flag("size"), "48x40");
   CHECK_STD_STRING(panel.chosen("MaterialsBox").toStdString(), "hand");
-  CHECK_STD_STRING(panel.flag("materials"), "auto");
+  CHECK_STD_STRING(panel.flag("materials"), "library");
   CHECK_STD_STRING(findMaterial(panel, 0)->currentData().toString().toStdString(), "spleen");
   CHECK_BOOL(panel.find<QPushButton>("RenderButton")->isEnabled(), true);
   CHECK_STD_STRING(labelText(panel, "StateLabel"), "");
