@@ -205,7 +205,7 @@ struct RenderOptionTable {
       {"materials", "none|library|contrast|FILE", appearanceGroup,
        "Segment colors by material: none, library (Fenestra's), a .json file that extends the "
        "library, or contrast: library colors, adjusted so that the focus is distinguishable; "
-       "opacity and surfaces are unaffected [contrast if the material of the focus is known "
+       "opacity and surfaces are unaffected [library in CT if the material of the focus is known "
        "and "
        "--context-saturation is not given, else none]",
        ValueSpec::text()

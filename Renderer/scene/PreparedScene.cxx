@@ -129,9 +129,11 @@ std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segment
   const RenderRequest& r = m_request;
   if (r.materials)
     return *r.materials;
-  const bool isAdjusted = !r.focus.empty() && !r.focusStyle.contextSaturation;
-  return isAdjusted && hasKnownMaterial(segments->segmentation, r.focus) ? contrastMaterials
-                                                                         : noMaterials;
+  // One color per segment would hide the signal inside an organ, which is what MR shows.
+  const bool isTissue = isPlausibleModality(Modality::ct, m_volume->volume);
+  const bool isDefault = isTissue && !r.focus.empty() && !r.focusStyle.contextSaturation;
+  return isDefault && hasKnownMaterial(segments->segmentation, r.focus) ? libraryMaterials
+                                                                        : noMaterials;
 }
 
 void PreparedScene::makeTint(const std::string& name) {

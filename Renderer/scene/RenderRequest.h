@@ -94,7 +94,7 @@ struct RenderRequest {
   std::optional<std::string> segmentation = {}; ///< node of the scene, or a file
   std::optional<std::string> labels = {};       ///< names of label values (LabelSearch.h)
   std::vector<std::string> focus = {};          ///< ids, names or label values
-  /// "none", "library", "contrast", or a file. By default "contrast" if a focus segment has a
+  /// "none", "library", "contrast", or a file. By default "library" in CT if a focus segment has a
   /// known material and no context saturation is given, else "none".
   std::optional<std::string> materials = {};
   std::vector<std::string> materialChanges = {}; ///< arguments of parseMaterialChange

@@ -119,21 +119,37 @@ TEST_F(MaterialsCommand, NeedNoFocusAndAreAFact) {
                          "materials: library, 1 color\n");
 }
 
-/// The library has a material for "Bone, left", but none for "Void".
-TEST_F(MaterialsCommand, DefaultIsContrastIfTheMaterialOfTheFocusIsKnown) {
+/// CT numbers: bone, and air in the last voxel.
+std::string makeBone() {
+  std::string samples;
+  for (int i = 0; i < 64; ++i) {
+    const auto value = static_cast<std::uint16_t>(i < 63 ? 300 : -1000);
+    samples += {static_cast<char>(value & 0xFF), static_cast<char>(value >> 8)};
+  }
+  return samples;
+}
+
+/// The library has a material for "Bone, left", but none for "Void". In MR, one color per segment
+/// would hide the signal inside an organ.
+TEST_F(MaterialsCommand, DefaultIsTheLibraryInCtIfTheMaterialOfTheFocusIsKnown) {
   const auto renderChannels = [&](const Arguments& more) {
     return renderImage(makeArguments(more), folder.path()).channels;
   };
-  const auto automatic = renderChannels({"--focus", "A", "--materials", "contrast"});
-  const auto none = renderChannels({"--focus", "A", "--materials", "none"});
-  EXPECT_NE(automatic, none);
-  EXPECT_EQ(renderChannels({"--focus", "A"}), automatic);
-  EXPECT_EQ(renderChannels({"--focus", "A,B"}), automatic);
+  const auto renderMaterials = [&](const char* materials) {
+    return renderChannels({"--focus", "A", "--materials", materials});
+  };
+  EXPECT_EQ(renderChannels({"--focus", "A"}), renderMaterials("none")) << "not CT";
+  folder.write("volume.nrrd", NrrdText().encode(makeBone()));
+  const auto library = renderMaterials("library"), none = renderMaterials("none");
+  EXPECT_NE(library, none);
+  EXPECT_EQ(renderChannels({"--focus", "A"}), library);
+  EXPECT_EQ(renderChannels({"--focus", "A,B"}), library);
   EXPECT_EQ(renderChannels({"--focus", "A", "--context-saturation", "1"}),
             renderChannels({"--focus", "A", "--context-saturation", "1", "--materials", "none"}));
+  EXPECT_EQ(renderMaterials("auto"), renderMaterials("contrast")) << "the former name";
   const Outcome outcome =
       run(makeArguments({"--focus", "A", "--output", "a.png", "-v"}), folder.path());
-  EXPECT_NE(outcome.err.find("\nmaterials: contrast, "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("\nmaterials: library, "), std::string::npos) << outcome.err;
 }
 
 TEST_F(MaterialsCommand, FilesAndChangesOverrideTheLibrary) {
