@@ -130,7 +130,8 @@ struct RenderOptionTable {
        "Moves the cut away from the camera (into the focus) or, if negative, toward it",
        ValueSpec::number(-1e6, 1e6).bind(surface.offset), OverrideGroup::clip, Requires::clip},
       {OptionNames("clip-softness", "soft"), "MM", clipGroup,
-       "Depth behind the cut over which the volume fades in; auto: 0.6 for --clip surface, hole and "
+       "Depth behind the cut over which the volume fades in; auto: 0.6 for --clip surface, hole "
+       "and "
        "cutaway, else 0",
        ValueSpec::numberOrAuto(clip.softness, 0.0, 1e6, 0.0), OverrideGroup::clip, Requires::clip},
       {"context-density", "F", clipGroup,
@@ -138,8 +139,8 @@ struct RenderOptionTable {
        ValueSpec::number(0.0, 1.0).bind(focus.contextExtinction), OverrideGroup::own,
        Requires::focus},
       {"context-saturation", "S", clipGroup,
-       "Color saturation of everything but the focus, 0 (gray) to 1 (unchanged); auto: the largest "
-       "of 1, 0.35 and 0 that makes the focus distinguishable; 1 with materials",
+       "Color saturation of everything but the focus, 0 (gray) to 1 (unchanged); auto: "
+       "0.75, or as --materials contrast finds necessary",
        ValueSpec::numberOrAuto(focus.contextSaturation, 0.0, 1.0, 1.0), OverrideGroup::own,
        Requires::focus},
       {"view", "NAME", viewGroup,
@@ -205,9 +206,8 @@ struct RenderOptionTable {
       {"materials", "none|library|contrast|FILE", appearanceGroup,
        "Segment colors by material: none, library (Fenestra's), a .json file that extends the "
        "library, or contrast: library colors, adjusted so that the focus is distinguishable; "
-       "opacity and surfaces are unaffected [library in CT if the material of the focus is known "
-       "and "
-       "--context-saturation is not given, else none]",
+       "opacity and surfaces are unaffected [library in CT if the material of the focus is known, "
+       "else none]",
        ValueSpec::text()
            .bind(scene.materials, readWord)
            .withNamedValues({"none", "library", "contrast"})

@@ -60,10 +60,6 @@ struct NamedMaterials {
     return table.hasContrast || table.context.saturation || table.context.lightness;
   }
 };
-/// Saturation of the context around a focus in the colors of the library. It sets the focus off,
-/// and no color becomes stronger than in tissue.
-inline constexpr double libraryContextSaturation = 0.75;
-
 /// Materials of the library ("contrast": with contrast adjustment and skin detection), or of a file
 /// whose rules precede the library's. `contextSaturation`: for "library", if there is a focus.
 /// Throws Error (input).

@@ -131,16 +131,16 @@ std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segment
     return *r.materials;
   // One color per segment would hide the signal inside an organ, which is what MR shows.
   const bool isTissue = isPlausibleModality(Modality::ct, m_volume->volume);
-  const bool isDefault = isTissue && !r.focus.empty() && !r.focusStyle.contextSaturation;
+  const bool isDefault = isTissue && !r.focus.empty();
   return isDefault && hasKnownMaterial(segments->segmentation, r.focus) ? libraryMaterials
                                                                         : noMaterials;
 }
 
 void PreparedScene::makeTint(const std::string& name) {
   const RenderRequest& r = m_request;
-  std::optional<double> saturation; // of the context; the request's applies to the final colors
+  std::optional<double> saturation; // of the context; a given one applies to the final colors
   if (!r.focus.empty())
-    saturation = r.focusStyle.contextSaturation ? 1.0 : libraryContextSaturation;
+    saturation = r.focusStyle.contextSaturation ? 1.0 : defaultContextSaturation;
   const auto materials = m_materials.get(name, saturation);
   const bool isAdjusted = materials->hasColorAdjustment();
   const auto hasVoxels = m_hasVoxels.get(m_segments.result());

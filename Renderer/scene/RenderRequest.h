@@ -85,7 +85,7 @@ inline constexpr const char* noMaterials = "none";
 
 /// Library materials, adjusted so that the focus contrasts with its surroundings (TintContrast.h).
 inline constexpr const char* contrastMaterials = "contrast";
-/// Library materials; around a focus, with a context of libraryContextSaturation.
+/// Library materials; around a focus, with a context of defaultContextSaturation.
 inline constexpr const char* libraryMaterials = "library";
 
 struct RenderRequest {

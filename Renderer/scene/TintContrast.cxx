@@ -208,11 +208,10 @@ ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
   if (adjustable == Adjustable::nothing || colors.empty())
     return start;
   if (!context.saturation && isFocusAdjustable)
-    start.contextSaturation = libraryContextSaturation;
+    start.contextSaturation = defaultContextSaturation;
   AdjustmentSearch darker(colors, start, saturation, g);
   if (!context.saturation)
-    darker.increase(&ColorAdjustment::contextSaturation,
-                    isFocusAdjustable ? minSaturation : 0.0);
+    darker.increase(&ColorAdjustment::contextSaturation, isFocusAdjustable ? minSaturation : 0.0);
   if (!isFocusAdjustable)
     return darker.adjustment();
   AdjustmentSearch lighter = darker;

@@ -28,7 +28,7 @@ ColorAdjustment choose(const std::vector<InterfaceColors>& colors,
   return chooseAdjustment(colors, context, Adjustable::both, 1.0, 0.0);
 }
 /// Initial adjustment of a tinted focus: that of the library.
-constexpr ColorAdjustment muted{.contextSaturation = libraryContextSaturation};
+constexpr ColorAdjustment muted{.contextSaturation = defaultContextSaturation};
 
 double computeScore(const ColorAdjustment& adjustment, const InterfaceColors& colors) {
   return contrastScore(measureAdjustedContrast(adjustment, colors, 1.0, 0.0));
