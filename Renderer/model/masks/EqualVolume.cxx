@@ -234,6 +234,8 @@ void equalizeVolume(const Mask& labels, const Grid& volume, Mask& smooth) {
         std::clamp(lengths.findLevel(std::llround(length * LevelLengths::unit)), 1.0, 254.0);
     factor *= (255.0 - level) / level;
     values = multiplyOdds(factor);
+    if (std::abs(level - 127.5) < 0.25)
+      break;
   }
   for (std::uint8_t& voxel : smooth.voxels)
     voxel = values[voxel];

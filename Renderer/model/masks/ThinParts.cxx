@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <functional>
+#include <map>
+#include <utility>
 #include <vector>
 
 namespace fenestra {
@@ -22,8 +24,6 @@ public:
         m_rowWords((size.x() + wordBits - 1) / wordBits),
         m_words(static_cast<std::size_t>(m_rowWords * size.y() * size.z())) {}
 
-  const Size3& size() const { return m_size; }
-  std::int64_t rowWords() const { return m_rowWords; }
   Word* row(std::int64_t y, std::int64_t z) {
     return m_words.data() + m_rowWords * (y + m_size.y() * z);
   }
@@ -66,23 +66,24 @@ public:
 
   /// All voxels within `radius` mm of the set.
   VoxelSet dilate(double radius) const {
-    VoxelSet result(m_size, m_spacing);
-    const std::vector<RowOffset> offsets = findOffsets(radius);
-    std::vector<char> isEmptyRow(static_cast<std::size_t>(m_size.y() * m_size.z()));
-    for (std::size_t i = 0; i < isEmptyRow.size(); ++i) {
-      const Word* const words = m_words.data() + static_cast<std::int64_t>(i) * m_rowWords;
-      isEmptyRow[i] = std::all_of(words, words + m_rowWords, [](Word word) { return word == 0; });
+    VoxelSet result(m_size, m_spacing), along = *this; // dilated along x
+    std::int64_t reach = 0;
+    for (const auto& [wanted, offsets] : findOffsets(radius)) {
+      for (; reach < wanted; ++reach)
+        along.dilateRows();
+      tbb::parallel_for(std::int64_t{0}, m_size.z(), [&](std::int64_t z) {
+        for (std::int64_t y = 0; y < m_size.y(); ++y)
+          for (const auto& [offsetY, offsetZ] : offsets) {
+            const std::int64_t fromY = y + offsetY, fromZ = z + offsetZ;
+            if (fromY < 0 || fromY >= m_size.y() || fromZ < 0 || fromZ >= m_size.z())
+              continue;
+            const Word* const from = along.row(fromY, fromZ);
+            Word* const to = result.row(y, z);
+            for (std::int64_t i = 0; i < m_rowWords; ++i)
+              to[i] |= from[i];
+          }
+      });
     }
-    tbb::parallel_for(std::int64_t{0}, m_size.z(), [&](std::int64_t z) {
-      std::vector<Word> buffer(static_cast<std::size_t>(2 * m_rowWords));
-      for (std::int64_t y = 0; y < m_size.y(); ++y)
-        for (const RowOffset& offset : offsets) {
-          const std::int64_t fromY = y + offset.y, fromZ = z + offset.z;
-          if (fromY >= 0 && fromY < m_size.y() && fromZ >= 0 && fromZ < m_size.z() &&
-              !isEmptyRow[static_cast<std::size_t>(fromY + m_size.y() * fromZ)])
-            addDilatedRow(row(fromY, fromZ), offset.reach, buffer, result.row(y, z));
-        }
-    });
     return result;
   }
 
@@ -93,49 +94,39 @@ private:
     return bits >= wordBits ? ~Word{0} : (Word{1} << bits) - 1;
   }
 
-  /// A row of a ball: its voxels are up to `reach` along x from its center.
-  struct RowOffset {
-    std::int64_t y, z, reach;
-  };
+  /// Rows of a ball, y and z from its center, by their half length in voxels.
+  using BallRows = std::map<std::int64_t, std::vector<std::pair<std::int64_t, std::int64_t>>>;
 
-  std::vector<RowOffset> findOffsets(double radius) const {
-    constexpr double mostVoxels = 31.0; // limits time; shifts must be less than a word
+  BallRows findOffsets(double radius) const {
+    constexpr double mostVoxels = 31.0; // limits time
     const Vec3 limits = (radius * m_spacing.cwiseInverse()).cwiseMin(mostVoxels);
     const auto floorToInt = [](double value) { return static_cast<std::int64_t>(value + 1e-6); };
-    std::vector<RowOffset> offsets;
+    BallRows rows;
     for (std::int64_t z = -floorToInt(limits.z()); z <= floorToInt(limits.z()); ++z)
       for (std::int64_t y = -floorToInt(limits.y()); y <= floorToInt(limits.y()); ++y) {
         const double away = std::hypot(static_cast<double>(y) * m_spacing.y(),
                                        static_cast<double>(z) * m_spacing.z());
-        if (away <= radius * (1.0 + 1e-6))
-          offsets.push_back(
-              {y, z,
-               floorToInt(
-                   std::min(std::sqrt(std::max(radius * radius - away * away, 0.0)) / m_spacing.x(),
-                            mostVoxels))});
+        if (away > radius * (1.0 + 1e-6))
+          continue;
+        const double half = std::sqrt(std::max(radius * radius - away * away, 0.0));
+        rows[floorToInt(std::min(half / m_spacing.x(), mostVoxels))].emplace_back(y, z);
       }
-    return offsets;
+    return rows;
   }
 
-  /// Adds a row, dilated by `reach` voxels in both directions.
-  void addDilatedRow(const Word* from, std::int64_t reach, std::vector<Word>& buffer,
-                     Word* to) const {
-    Word* row = buffer.data();
-    Word* next = row + m_rowWords;
-    std::copy_n(from, m_rowWords, row);
-    // [-a, a] shifted by up to 2 a + 1 in both directions covers a larger interval without gaps.
-    for (std::int64_t done = 0; done < reach;) {
-      const std::int64_t shift = std::min(reach - done, 2 * done + 1);
+  /// Adds the neighbors of the voxels along x.
+  void dilateRows() {
+    tbb::parallel_for(std::int64_t{0}, m_size.y() * m_size.z(), [&](std::int64_t y) {
+      Word* const words = row(y, 0);
+      Word before = 0;
       for (std::int64_t i = 0; i < m_rowWords; ++i) {
-        const Word before = i > 0 ? row[i - 1] : 0, after = i + 1 < m_rowWords ? row[i + 1] : 0;
-        next[i] = row[i] | row[i] << shift | before >> (wordBits - shift) | row[i] >> shift |
-                  after << (wordBits - shift);
+        const Word here = words[i], after = i + 1 < m_rowWords ? words[i + 1] : 0;
+        words[i] =
+            (here | here << 1 | before >> (wordBits - 1) | here >> 1 | after << (wordBits - 1)) &
+            findUsedBits(i);
+        before = here;
       }
-      std::swap(row, next);
-      done += shift;
-    }
-    for (std::int64_t i = 0; i < m_rowWords; ++i)
-      to[i] |= row[i] & findUsedBits(i);
+    });
   }
 
   Size3 m_size;
@@ -147,13 +138,16 @@ private:
 VoxelSet findInside(const Mask& mask, const Size3& first, const Size3& size) {
   VoxelSet inside(size, mask.grid.spacing());
   const Size3 last = mask.grid.size.array() - 1;
+  const std::uint8_t threshold = mask.threshold();
   tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < size.y(); ++y) {
-      Word* const row = inside.row(y, z);
+      const Size3 start = (first + Size3(0, y, z)).cwiseMax(0).cwiseMin(last);
+      const std::uint8_t* const from =
+          mask.voxels.data() + linearIndex({0, start.y(), start.z()}, mask.grid.size);
+      Word* const to = inside.row(y, z);
       for (std::int64_t x = 0; x < size.x(); ++x) {
-        const Size3 voxel = (first + Size3(x, y, z)).cwiseMax(0).cwiseMin(last);
-        if (mask.voxels[linearIndex(voxel, mask.grid.size)] >= mask.threshold())
-          row[x / wordBits] |= Word{1} << (x % wordBits);
+        const std::int64_t fromX = std::clamp<std::int64_t>(first.x() + x, 0, last.x());
+        to[x / wordBits] |= Word{from[fromX] >= threshold} << (x % wordBits);
       }
     }
   });
