@@ -202,9 +202,11 @@ LabelWeights computeLabelWeights(const Handle<SegmentsInput>& input,
   std::optional<Grid> labels; // of the preceding parts
   const auto partAt = [&](std::size_t number) -> LabelWeights::Part {
     const TintPart& part = parts[number];
+    // A neighbor of equal priority would take part of the saturated focus, as deep as labels are
+    // smoothed.
+    const int priority = 2 * part.priority + (part.isFocus ? 1 : 0);
     if (part.segments.empty())
-      return {resampleMask(*skin, labels.value_or(skin->grid), volume), part.priority,
-              part.component};
+      return {resampleMask(*skin, labels.value_or(skin->grid), volume), priority, part.component};
     std::vector<SegmentInfo> segments;
     for (const std::size_t i : part.segments)
       segments.push_back(segmentation.segments()[i]);
@@ -212,7 +214,7 @@ LabelWeights computeLabelWeights(const Handle<SegmentsInput>& input,
     if (part.isFocus)
       saturate(mask);
     labels = mask.grid;
-    return {std::move(mask), part.priority, part.component};
+    return {std::move(mask), priority, part.component};
   };
   return {parts.size(), partAt};
 }
