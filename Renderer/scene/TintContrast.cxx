@@ -81,12 +81,13 @@ public:
   /// with a sufficient score, or the one with the best.
   void increase(double ColorAdjustment::*member, double limit) {
     constexpr int steps = 20;
+    constexpr double leastGain = 1e-6; // above rounding errors, as of a gray context
     ColorAdjustment candidate = m_adjustment;
     const double first = candidate.*member;
     for (int i = 1; i <= steps && m_score < sufficientScore; ++i) {
       candidate.*member = first + (limit - first) * i / steps;
       const double score = computeScore(candidate);
-      if (score > m_score) {
+      if (score > m_score + leastGain) {
         m_adjustment = candidate;
         m_score = score;
       }

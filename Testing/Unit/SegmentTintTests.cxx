@@ -31,8 +31,7 @@ Handle<NamedMaterials> makeMaterials(const std::string& json) {
 }
 
 const Handle<NamedMaterials> library = std::make_shared<NamedMaterials>(findMaterials("library"));
-const Handle<NamedMaterials> contrast =
-    std::make_shared<NamedMaterials>(findMaterials("contrast"));
+const Handle<NamedMaterials> contrast = std::make_shared<NamedMaterials>(findMaterials("contrast"));
 
 TintPlan makePlan(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
                   const std::vector<std::string>& changes = {},
@@ -89,12 +88,15 @@ TEST(SegmentTint, FocusIsSeparateIfContrastIsAdjusted) {
   EXPECT_EQ(makePlan(segments, library, {}, {"aorta"}).isFocus, std::vector<bool>(4, false));
 }
 
-/// The library gives segments with unknown names palette colors; contrast adjustment does not,
-/// since they would compete with the focus.
-TEST(SegmentTint, AutoColorsOnlyKnownSegments) {
+/// The library gives segments with unknown names palette colors, but not around a focus, with which
+/// they would compete.
+TEST(SegmentTint, OnlyKnownSegmentsHaveColorsAroundAFocus) {
   const auto segments = makeRow({"liver", "Thing", "Other"});
   EXPECT_EQ(makePlan(segments, library).components.size(), 4U);
   EXPECT_EQ(makePlan(segments, contrast).components.size(), 2U);
+  const Handle<NamedMaterials> muted =
+      std::make_shared<NamedMaterials>(findMaterials("library", defaultContextSaturation));
+  EXPECT_EQ(makePlan(segments, muted, {}, {"liver"}).components.size(), 2U);
   const TintPlan requested = makePlan(segments, contrast, {"Thing: color=#00ff00"});
   EXPECT_EQ(requested.components.size(), 3U);
 }
