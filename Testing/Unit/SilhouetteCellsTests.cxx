@@ -122,6 +122,77 @@ TEST(SilhouetteCells, DepthReachesTheSamplesWithoutASteepSlope) {
   EXPECT_LT(slopes[slopes.size() * 998 / 1000], 20.0) << "except where outlines cross";
 }
 
+/// A tilted disk of 3 mm voxels, seen along an axis: ray maxima lie on planes of voxels.
+struct Stairs {
+  Grid grid{{24, 24, 24}, makeTranslation(Vec3::Constant(-34.5)) * makeScaling({3.0, 3.0, 3.0})};
+  Domain volume{grid};
+  Mask focus = makeSphereMask(grid, 25.0);
+  Camera camera = makeAnteriorCamera(Projection::orthographic, 200.0, 30.0, 100, 100);
+
+  Stairs() {
+    for (std::int64_t i = 0; i < grid.size.prod(); ++i) {
+      const Size3 voxel(i % 24, i / 24 % 24, i / 576);
+      const Vec3 at = grid.indexToWorld * voxel.cast<double>();
+      if (std::abs(at.y() - 0.5 * at.x() - 0.25 * at.z()) > 8.0)
+        focus.voxels[static_cast<std::size_t>(i)] = 0;
+    }
+  }
+
+  ClippingSurface surface(Outline outline) const {
+    return buildClippingSurface(camera, volume, focus,
+                                {.boundary = Boundary::exact, .outline = outline});
+  }
+};
+
+TEST(SilhouetteCells, SmoothOutlineHasNoNotches) {
+  const Stairs stairs;
+  // Percentile of the jumps between neighbors just outside the focus.
+  const auto findJump = [&](Outline outline, std::size_t percentile) {
+    const ClippingSurface surface = stairs.surface(outline);
+    const auto& clip = std::get<ClipDepth>(surface.clip);
+    std::vector<double> jumps;
+    const auto isBeside = [&](std::int64_t c, std::int64_t r) {
+      const FocusDepth& focus = surface.focus;
+      return !focus.isFocus(c, r) && (focus.isFocus(c + 1, r) || focus.isFocus(c - 1, r) ||
+                                      focus.isFocus(c, r + 1) || focus.isFocus(c, r - 1));
+    };
+    const DepthBuffer& buffer = *clip.buffer;
+    for (std::int64_t r = 1; r + 1 < buffer.rows(); ++r)
+      for (std::int64_t c = 1; c + 1 < buffer.columns(); ++c)
+        for (const auto& [x, y] : {std::pair{1, 0}, {1, 1}, {0, 1}, {-1, 1}})
+          if (isBeside(c, r) && isBeside(c + x, r + y))
+            jumps.push_back(
+                std::abs(buffer.at(buffer.sample(c, r)) - buffer.at(buffer.sample(c + x, r + y))));
+    std::ranges::sort(jumps);
+    return jumps[jumps.size() * percentile / 100];
+  };
+  EXPECT_GT(findJump(Outline::traced, 95), 1.0);
+  EXPECT_LT(findJump(Outline::smooth, 90), 0.5);
+}
+
+TEST(SilhouetteCells, SmoothOutlineShowsTheFocusAndStepsAtMostAVoxel) {
+  const Stairs stairs;
+  const ClippingSurface traced = stairs.surface(Outline::traced);
+  const ClippingSurface smooth = stairs.surface(Outline::smooth);
+  const FocusTracer tracer(stairs.camera, stairs.volume, stairs.focus);
+  int hits = 0;
+  std::vector<double> changes;
+  Random random(4, 0, 0);
+  for (int i = 0; i < 4000; ++i) {
+    const Vec2 at(uniform(random, -29.0, 29.0), uniform(random, -29.0, 29.0));
+    const double depth = std::get<ClipDepth>(smooth.clip).surfaceDepth(at);
+    if (const double focus = tracer.findDepths({at})[0]; focus < infinity) {
+      ++hits;
+      ASSERT_NEAR(depth, focus, 1e-4) << at;
+    } else {
+      changes.push_back(std::abs(depth - std::get<ClipDepth>(traced.clip).surfaceDepth(at)));
+    }
+  }
+  EXPECT_GT(hits, 1000);
+  std::ranges::sort(changes);
+  EXPECT_LT(changes[changes.size() * 95 / 100], 3.0);
+}
+
 TEST(SilhouetteCells, ClipWeightEqualsThatOfTheFullSurface) {
   // clipWeight() evaluates only the part of the surface that affects its result.
   for (const Projection projection : projections)

@@ -145,6 +145,41 @@ void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) 
   m_halo.resize(found);
 }
 
+void SilhouetteCells::smoothHalo(const DepthBuffer& buffer, double voxelEdge) {
+  const double sigma = std::clamp(voxelEdge / std::abs(buffer.xAxis().pitch), 2.0, 8.0); // samples
+  const double jump = std::max(2.0, 2.0 * voxelEdge);
+  const auto reach = static_cast<std::int64_t>(std::ceil(2.5 * sigma));
+  std::vector<std::int32_t> indices(m_indices.size(), -1);
+  for (std::size_t i = 0; i < m_halo.size(); ++i)
+    indices[static_cast<std::size_t>(m_halo[i].sample)] = static_cast<std::int32_t>(i);
+  const auto average = [&](const HaloSample& own) {
+    const std::int64_t column = own.sample % buffer.columns(), row = own.sample / buffer.columns();
+    double sum = 0.0, weights = 0.0;
+    for (std::int64_t r = std::max<std::int64_t>(row - reach, 0);
+         r <= std::min(row + reach, buffer.rows() - 1); ++r)
+      for (std::int64_t c = std::max<std::int64_t>(column - reach, 0);
+           c <= std::min(column + reach, buffer.columns() - 1); ++c) {
+        const std::int32_t index = indices[static_cast<std::size_t>(buffer.sample(c, r))];
+        if (index < 0)
+          continue;
+        const double difference = m_halo[static_cast<std::size_t>(index)].depth - own.depth;
+        if (std::abs(difference) > jump)
+          continue;
+        const auto x = static_cast<double>(c - column), y = static_cast<double>(r - row);
+        const double weight = std::exp(-0.5 * (x * x + y * y) / (sigma * sigma));
+        sum += weight * difference;
+        weights += weight;
+      }
+    return own.depth + sum / weights;
+  };
+  std::vector<double> depths(m_halo.size());
+  tbb::parallel_for(std::size_t{0}, m_halo.size(),
+                    [&](std::size_t i) { depths[i] = average(m_halo[i]); });
+  for (std::size_t i = 0; i < m_halo.size(); ++i)
+    m_halo[i].depth = depths[i];
+  m_isSmooth = true;
+}
+
 void SilhouetteCells::move(double offset) {
   m_offset += offset;
   for (DepthBounds& bounds : m_depthBounds)
@@ -177,7 +212,10 @@ void SilhouetteCells::evaluate(std::span<Query> queries) const {
       inner.queries[i]->depth = inner.results[i].depth - toFocus;
     else
       addToRest(*inner.queries[i]);
-  m_tracer->findHitsAndMaxima(rest.depthQueries(), rest.hits());
+  if (m_isSmooth)
+    m_tracer->findHits(rest.depthQueries(), rest.hits());
+  else
+    m_tracer->findHitsAndMaxima(rest.depthQueries(), rest.hits());
   for (std::size_t i = 0; i < rest.size; ++i)
     if (const DepthHit& hit = rest.results[i]; hit.indicator > FocusCells::captureThreshold) {
       Query& query = *rest.queries[i];

@@ -18,6 +18,11 @@
 //         silhouette    |                        1/4 - -/- - -\- - -   captureThreshold
 //      filled surface   | exact                     ___/       \____
 //
+// In views along an axis of the focus's grid, ray maxima lie on planes of voxels. Their depths then
+// jump by a voxel along the outline, and the surface has notches and pleats. After smoothHalo(),
+// the halo has their mean along the outline, and rays that miss follow the buffer. The surface may
+// then have a step at the outline, where the focus is as good as parallel to the ray.
+//
 // The depth bounds of a cell contain all depths at which its rays can hit the focus; points outside
 // them need no query. In an inner cell, where all samples are focus, they are the depth range of
 // the samples around it, extended away from the camera to twice its length. Spikes and pits that
@@ -39,6 +44,12 @@ public:
     double depth; ///< of the ray maximum, mm
   };
   const std::vector<HaloSample>& halo() const { return m_halo; }
+
+  /// Replaces the halo's depths by their mean along the outline, with Gaussian weights of standard
+  /// deviation max(2 samples, `voxelEdge`), at most 8 samples, from depths within max(2 mm, 2
+  /// `voxelEdge`) of the sample's own. Never changes the surface where a ray hits the focus.
+  /// `buffer`: that of the focus; `voxelEdge`: longest of the focus's grid, mm.
+  void smoothHalo(const DepthBuffer& buffer, double voxelEdge);
 
   /// Moves the surface `offset` mm away from the camera.
   void move(double offset);
@@ -88,6 +99,7 @@ private:
   std::vector<DepthBounds> m_depthBounds;
   std::vector<bool> m_isInner; ///< per silhouette cell
   std::vector<HaloSample> m_halo;
+  bool m_isSmooth = false; ///< rays that miss follow the buffer
 };
 
 } // namespace fenestra

@@ -209,6 +209,8 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
     fillHole(*buffer, surface.focus, camera, options.hole);
   } else if (options.boundary == Boundary::exact) {
     silhouette = std::make_shared<SilhouetteCells>(tracer, surface.focus);
+    if (options.outline == Outline::smooth)
+      silhouette->smoothHalo(surface.focus.depth, focus.grid.spacing().maxCoeff());
     fillFromHalo(*buffer, surface.focus, *silhouette, computeLevelingLength(volume));
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
