@@ -13,10 +13,15 @@ struct Condition {
 };
 
 constexpr Condition conditions[] = {
-    {"clip-boundary", "spline", Needs::surface}, {"control-points", "50", Needs::spline},
-    {"spline-smoothing", "0.5", Needs::spline},  {"clip-softness", "0", Needs::focus},
-    {"label-smoothing", "0", Needs::focus},      {"margin", "0", Needs::focus},
-    {"materials", "none", Needs::nothing},       {"context-saturation", "1", Needs::focus},
+    {"clip-boundary", "spline", Needs::surface},
+    {"clip-outline", "traced", Needs::surface},
+    {"control-points", "50", Needs::spline},
+    {"spline-smoothing", "0.5", Needs::spline},
+    {"clip-softness", "0", Needs::focus},
+    {"label-smoothing", "0", Needs::focus},
+    {"margin", "0", Needs::focus},
+    {"materials", "none", Needs::nothing},
+    {"context-saturation", "1", Needs::focus},
     {"context-density", "1", Needs::focus},
     {"gradient", "central", Needs::nothing},
     {"volume-smoothing", "off", Needs::nothing},

@@ -112,7 +112,7 @@ std::string describe(const SmoothingReport& report) {
   for (const LesionContrast& lesion : lesionContrasts)
     line << (&lesion == lesionContrasts ? " of " : ", ") << lesion.diameter << " mm keep "
          << lesion.percent << " %";
-  line << " of their contrast; --volume-smoothing off leaves the volume raw";
+  line << " of their contrast (measured on one CT); --volume-smoothing off leaves the volume raw";
   return line.str();
 }
 

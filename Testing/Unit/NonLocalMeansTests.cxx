@@ -95,7 +95,7 @@ TEST_P(NonLocalMeansOnEach, EqualsItsDefinition) {
       makeVoxels<std::int16_t>(makeScaledGrid({133, 34, 9}, {0.9, 0.9, 2.5}), noisyTissues),
       {30.0, 28.0}, 0.501);
   expectDefinition<float>(
-      makeVoxels<float>(makeScaledGrid({19, 7, 11}, {1.0, 1.0, 1.0}), noisyTissues), {25.0, 30.0},
+      makeVoxels<float>(makeScaledGrid({19, 7, 11}, {0.5, 0.5, 6.0}), noisyTissues), {25.0, 30.0},
       1e-3);
   expectDefinition<std::uint8_t>(
       makeVoxels<std::uint8_t>(makeScaledGrid({21, 14, 1}, {1.0, 0.5, 4.0}),

@@ -199,13 +199,16 @@ Affine makeSliceToWorld(const ImagePlane& plane) {
 std::string encodeSlice(const Image& image, const ImagePlane& plane,
                         const std::vector<float>& values) {
   const std::size_t components = values.size() / image.channels.at("R").size();
+  NrrdFields fields = {{"Software", std::string(blankProvenanceTag)}};
+  if (const auto volume = image.header.find("volume"); volume != image.header.end())
+    fields.emplace_back(*volume);
   const NrrdHeader header{.type = "float",
                           .leadingKind = components > 1 ? "vector" : "",
                           .leadingCount = components,
                           .size = {image.width, image.height, 1},
                           .indexToWorld = makeSliceToWorld(plane),
                           .encoding = NrrdHeader::Encoding::raw,
-                          .fields = {{"Software", std::string(blankProvenanceTag)}}};
+                          .fields = std::move(fields)};
   return sealProvenanceTag(encodeNrrd(header, asBytes(values)));
 }
 
