@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(
                [](RenderRequest& r) {
                  r.smoothing = {SmoothingRequest::Kind::given, 20.0};
                },
-               {.volume = true, .majorants = true, .minMaxGrid = true}},
+               {.volume = true, .minMaxGrid = true, .majorants = true}},
         Change{"Volume",
                [](RenderRequest& r) { r.input = *r.segmentation; },
                {true, true, true, true, true, true, true, true}}),
