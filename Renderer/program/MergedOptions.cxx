@@ -177,7 +177,9 @@ PresetOptions mergePreset(const OptionValues& given, const Input& input) {
   const OptionValues preferred = values;
   for (const auto& [name, value] : preset.options) {
     const Option& option = findPresetOption(name, *given.text("preset"));
-    if (isOverridden(option, preferred) || (isClipOption(option) && !values.has("focus")))
+    if (isOverridden(option, preferred) ||
+        (!values.has("focus") &&
+         (isClipOption(option) || option.overrideGroup == OverrideGroup::materials)))
       continue;
     values.remove(option.name);
     values.add(option.name, value);

@@ -44,14 +44,14 @@ TEST_F(InspectCommand, ReportsTheMaterialOfEachSegment) {
   const Json& bone = report["segmentations"][0]["segments"][0]["material"];
   EXPECT_EQ(bone["name"], "bone");
   EXPECT_EQ(bone["kind"], "tint");
-  EXPECT_NEAR(bone["color"][2].get<double>(), 0xdc / 255.0, 1e-9);
+  EXPECT_NEAR(bone["color"][2].get<double>(), 0xb4 / 255.0, 1e-9);
   EXPECT_EQ(bone["priority"], 10);
   EXPECT_EQ(bone["clip"], true);
   EXPECT_EQ(bone["density"], 1.0);
   EXPECT_EQ(bone["why"], "by name 'bone*'");
   const Json& other = report["segmentations"][0]["segments"][1]["material"];
   EXPECT_TRUE(other["name"].is_null()) << other;
-  expectStated(text, " | #f6eedc | 'bone*'");
+  expectStated(text, " | #e3d3b4 | 'bone*'");
 }
 
 TEST_F(InspectCommand, ReportsLabelMapAsSegmentation) {
@@ -107,7 +107,7 @@ TEST_F(InspectCommand, ListsSceneNodesAndThoseRendered) {
       std::ranges::find(library, "liver", [](const Json& one) { return one["name"]; });
   ASSERT_NE(liver, library.end());
   EXPECT_EQ((*liver)["kind"], "tint");
-  EXPECT_EQ((*liver)["color"][0], 0x96 / 255.0);
+  EXPECT_EQ((*liver)["color"][0], 0x6a / 255.0);
 
   const Json& render = report["render"];
   EXPECT_EQ(render["volume"]["id"], "vol1");

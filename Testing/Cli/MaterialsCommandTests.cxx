@@ -115,7 +115,8 @@ TEST_F(MaterialsCommand, NeedNoFocusAndAreAFact) {
   const Outcome outcome = run(
       makeArguments({"--materials", "library", "--output", "a.png", "--verbose"}), folder.path());
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "transfer function: by the volume's range\nlights: theatre-wet\n"
+  EXPECT_EQ(outcome.err, "transfer function: by the volume's range\nvolume: not smoothed, its "
+                         "noise is 0\nlights: theatre-wet\n"
                          "materials: library, 1 color\n");
 }
 
@@ -144,8 +145,9 @@ TEST_F(MaterialsCommand, DefaultIsTheLibraryInCtIfTheMaterialOfTheFocusIsKnown) 
   EXPECT_NE(library, none);
   EXPECT_EQ(renderChannels({"--focus", "A"}), library);
   EXPECT_EQ(renderChannels({"--focus", "A,B"}), library);
-  EXPECT_EQ(renderChannels({"--focus", "A", "--context-saturation", "1"}),
-            renderChannels({"--focus", "A", "--context-saturation", "1", "--materials", "none"}));
+  EXPECT_EQ(
+      renderChannels({"--focus", "A", "--context-saturation", "1"}),
+      renderChannels({"--focus", "A", "--context-saturation", "1", "--materials", "library"}));
   EXPECT_EQ(renderMaterials("auto"), renderMaterials("contrast")) << "the former name";
   const Outcome outcome =
       run(makeArguments({"--focus", "A", "--output", "a.png", "-v"}), folder.path());

@@ -68,11 +68,12 @@ TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
 
   Arguments written = {"--focus", "FemoralCartilage,TibialCartilage"};
   for (const std::string& line : lines)
-    for (const char* option : {"materials", "transfer", "lights", "view", "clip", "clip-boundary"})
+    for (const char* option : {"materials", "transfer", "lights", "view", "clip", "clip-boundary",
+                               "label-smoothing", "clip-softness"})
       if (line.starts_with(std::string(option) + ": "))
         written.insert(written.end(),
                        {std::string("--") + option, line.substr(std::string(option).size() + 2)});
-  EXPECT_EQ(written.size(), 14u);
+  EXPECT_EQ(written.size(), 18u);
   ASSERT_EQ(renderKnee(addSegments(written)).status, 0);
   EXPECT_EQ(readResult().channels, byPreset.channels);
   EXPECT_FALSE(readResult().header.contains("preset"));
@@ -207,7 +208,7 @@ TEST(PresetsCommand, GivenPresetOverridesOptionsStoredInTheScene) {
 TEST(PresetsCommand, ServeSetsAndResetsThePreset) {
   const TemporaryFolder& folder = kneeFolder();
   Process process({"serve", "knee/knee.nrrd", "--size", "16x16", "--samples", "2", "--output",
-                   "served.exr", "--view", "superior"},
+                   "served.exr", "--view", "superior", "--volume-smoothing", "off"},
                   folder.path());
   const auto waitForImage = [&](const std::string& id) {
     return process.waitForOutput("\"picture\",\"id\":" + id + ",[^\n]*\"done\":true[^\n]*\n");
