@@ -29,9 +29,9 @@ foot=("$out/foot/foot.mrml" --materials none --focus bones --label-smoothing 0.6
 render knee-none "${knee[@]}" --clip none
 render knee-hand-plane "${knee[@]}" --clip plane --plane=0,10,-5,0,0.91,-0.41
 render knee-cutaway "${knee[@]}" --clip cutaway --clip-softness 2
-render knee-spline "${knee[@]}" --clip surface --clip-softness 2
+render knee-spline "${knee[@]}" --clip-boundary spline --clip-softness 2
 draw_outline knee-points knee-spline "${knee[@]}"
-render foot-spline "${foot[@]}" --clip surface
+render foot-spline "${foot[@]}" --clip-boundary spline
 join_images figure1.jpg knee-none "a  Whole" knee-hand-plane "b  Plane, by hand" knee-cutaway "c  Cut-away" \
   knee-spline "d  Clipping surface" knee-points "e  Outline, control points" foot-spline "f  Foot"
 
@@ -67,7 +67,7 @@ if [ -d "$torso" ]; then
     --transfer ct-skeleton --view posterior)
   render torso-none "${bones[@]}" --clip none
   render torso-cutaway "${bones[@]}" --clip cutaway
-  render torso-spline "${bones[@]}" --clip surface
+  render torso-spline "${bones[@]}" --clip-boundary spline
   render torso-exact "${bones[@]}" --clip-boundary exact
   join_images figure1-real.jpg torso-none "Whole" torso-cutaway "Cut-away" torso-spline "Surface, spline" \
     torso-exact "Surface, exact"
@@ -89,7 +89,8 @@ cat >>"$page" <<END
   and lights it well**: confirmed by the table.
 - **"C0, C1, C2 continuity"**: the spline is not C2 at a control point, where r² ln r² has a logarithmic second derivative.
   Across the outline of the focus the surface is not even C0: between control points it misses the depth of the focus by
-  the gap above, and its slope does not match. \`--clip-boundary exact\` matches both, up to a limit of slope.
+  the gap above, and its slope does not match. \`--clip-boundary exact --clip-outline traced\` matches both, up to a
+  limit of slope.
 - **N = 50 control points**: enough for a smooth, single outline. A gap between them remains, since p = 0.5 also smooths; see
   the table below.
 - **p = 0.5** means nothing without a unit of length, which the paper does not state. Ours is mm, so the same shape at 1 mm
@@ -104,7 +105,7 @@ END
   for n in 10 25 50 100 400; do
     printf '| %s |' "$n"
     for p in 0.5 0.9 0.99 1; do
-      size=192 samples=1 render "gap-$n-$p" "${knee[@]}" --control-points "$n" --spline-smoothing "$p" >/dev/null
+      size=192 samples=1 render "gap-$n-$p" "${knee[@]}" --clip-boundary spline --control-points "$n" --spline-smoothing "$p" >/dev/null
       printf ' %s |' "$(get "gap-$n-$p" .boundaryGapMm.mean)"
     done
     echo

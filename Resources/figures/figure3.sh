@@ -63,7 +63,7 @@ for mm in 1 512; do
   cube=("$out/cube-$mm/cube.mrml" --focus Focus --context-saturation 1)
   render "cube$mm-plane" "${cube[@]}" --clip plane
   render "cube$mm-cutaway" "${cube[@]}" --clip cutaway
-  render "cube$mm-spline" "${cube[@]}" --clip surface
+  render "cube$mm-spline" "${cube[@]}" --clip-boundary spline
   render "cube$mm-exact" "${cube[@]}" --clip-boundary exact
   for boundary in spline exact; do
     "$fenestra" "${cube[@]}" --clip-boundary "$boundary" --size 256x256 --samples 1 --quiet \

@@ -4,7 +4,8 @@
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 
 names=(plane hole cutaway ghost spline exact)
-options=("--clip plane" "--clip hole" "--clip cutaway" "--clip ghost --ghost 0.004" "--clip surface" "--clip-boundary exact")
+options=("--clip plane" "--clip hole" "--clip cutaway" "--clip ghost --clip-boundary spline --ghost 0.004"
+  "--clip-boundary spline" "--clip-boundary exact")
 titles=("Cut plane (placed by the focus)" "Virtual hole" "Cut-away" "Ghost, 0.004"
   "Clipping surface, spline" "Clipping surface, exact")
 page=$out/techniques.md
