@@ -238,7 +238,7 @@ bool vtkSlicerFenestraLogic::HasSurface(Node* render) {
   if (!render)
     return false;
   const std::string mode = render->GetFlag("clip");
-  if (mode.empty() || mode == "auto") // all presets clip by surface
+  if (mode.empty() || mode == "auto") // a focus is clipped by a surface
     return !render->GetFlag("focus").empty() || !render->GetFlag("preset").empty();
   return mode != "none" && mode != "plane";
 }
