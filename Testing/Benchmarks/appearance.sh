@@ -4,7 +4,7 @@
 # usage: bash Testing/Benchmarks/appearance.sh [NAME...] [-- ARGUMENT...]
 #        bash Testing/Benchmarks/appearance.sh --case VOLUME SEGMENTATION FOCUS [-- ARGUMENT...]
 #   NAME: scenes to measure [all]; FOCUS: names or label values, separated by commas
-#   ARGUMENT: arguments of fenestra for every image, such as --transfer ct-liver
+#   ARGUMENT: arguments of fenestra for every image, such as --transfer ct-soft
 # OUT: folder of the images and appearance.csv [appearance of the build]; FENESTRA_DATA: folder of the volumes;
 # FENESTRA_BUILD: an existing build to use. Fails if a value is out of its bounds.
 set -euo pipefail
@@ -81,11 +81,11 @@ else
   measure stroke A5 "$data/head_stroke/stroke_T1.nii.gz" --view left
   measure knee A5 "${knee[@]}" --focus 83 --view auto
   for focus in spleen liver aorta pancreas kidney_left,kidney_right stomach gallbladder duodenum; do
-    measure "contrast-$focus" contrast "${abdomen[@]}" --focus "$focus" --view auto --materials auto
+    measure "contrast-$focus" contrast "${abdomen[@]}" --focus "$focus" --view auto --materials contrast
   done
-  measure contrast-small_bowel contrast "${organs[@]}" --focus small_bowel --view auto --materials auto
-  measure contrast-torso-liver contrast "${organs[@]}" --focus liver --view auto --materials auto
-  measure contrast-knee contrast "${knee[@]}" --focus 83 --view auto --materials auto
+  measure contrast-small_bowel contrast "${organs[@]}" --focus small_bowel --view auto --materials contrast
+  measure contrast-torso-liver contrast "${organs[@]}" --focus liver --view auto --materials contrast
+  measure contrast-knee contrast "${knee[@]}" --focus 83 --view auto --materials contrast
 fi
 [ -n "$found" ] || die "${names[*]}: no such scene"
 
