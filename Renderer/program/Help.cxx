@@ -68,7 +68,7 @@ struct FirstOption {
 constexpr FirstOption firstOptions[] = {
     {"segmentation", "Segmentation: .seg.nrrd or any label map"},
     {"focus", "Segments to show unobstructed, by name"},
-    {"preset", "Settings for one anatomy, such as liver"},
+    {"preset", "Focus and view for one anatomy, such as liver"},
     {"view", "anterior, posterior, left, right, superior, ..."},
     {"size", "Image size in pixels [512x512]"},
     {"quality", "draft, normal, high or final"},

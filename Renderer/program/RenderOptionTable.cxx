@@ -62,7 +62,7 @@ struct RenderOptionTable {
        "comma in a name as \\,); may be repeated",
        ValueSpec::list().bind(scene.focus), OverrideGroup::focus},
       {"preset", "NAME|FILE|auto", sceneGroup,
-       concat("Settings for one anatomy (focus, clipping, view, appearance): ",
+       concat("Focus and view, and possibly other options, for one anatomy: ",
               join(listBuiltinPresets("presets"), ", "),
               ", a .json file, or auto (chosen by the segment names); other options override it"),
        ValueSpec::text()
@@ -81,8 +81,8 @@ struct RenderOptionTable {
        OverrideGroup::focus, Requires::focus},
       {"label-smoothing", "MM", clipGroup,
        "Smooths the segments by a Gaussian of this standard deviation; thick slices are "
-       "interpolated first; auto: 1.25 of the edge of the voxels on which they were made, at equal "
-       "volume, and 0.4 of that for thin parts and narrow gaps",
+       "interpolated first; auto: 1.25 times the edge of the voxels on which they were made, at "
+       "equal volume, and 0.4 times that for thin parts and narrow gaps",
        ValueSpec::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0, 0.0), OverrideGroup::own,
        Requires::labels},
       {"clip", "MODE", clipGroup,
@@ -137,8 +137,7 @@ struct RenderOptionTable {
        ValueSpec::number(-1e6, 1e6).bind(surface.offset), OverrideGroup::clip, Requires::clip},
       {OptionNames("clip-softness", "soft"), "MM", clipGroup,
        "Depth behind the cut over which the volume fades in; auto: 0.6 for --clip surface, hole "
-       "and "
-       "cutaway, else 0",
+       "and cutaway, else 0",
        ValueSpec::numberOrAuto(clip.softness, 0.0, 1e6, 0.0), OverrideGroup::clip, Requires::clip},
       {"context-density", "F", clipGroup,
        "Opacity of everything but the focus: factor on its extinction, 0 (invisible) to 1",
@@ -181,8 +180,7 @@ struct RenderOptionTable {
       {"transfer", "FILE|PRESET|JSON", appearanceGroup,
        "Transfer function, which gives voxel values color and opacity: a .vp, .vp.json or Fenestra "
        ".json file, inline JSON, a preset such as ct-anatomy, or a volume property of the scene or "
-       "of "
-       "3D Slicer by name, such as CT-AAA [the scene's, else by modality]",
+       "of 3D Slicer by name, such as CT-AAA [the scene's, else by modality]",
        ValueSpec::text()
            .bind(scene.transfer)
            .withNamedValues(listBuiltinPresets("transfer"))
@@ -203,8 +201,8 @@ struct RenderOptionTable {
                          {{"sobel", GradientKind::sobel}, {"central", GradientKind::central}})},
       {"volume-smoothing", "auto|off|N", appearanceGroup,
        "Smooths the volume by non-local means, for all outputs alike: off, N (standard deviation "
-       "of the noise, in scalar units, such as HU), or auto: by the noise that it finds, if an "
-       "output is .png or .tif",
+       "of the noise, in scalar units, such as HU), or auto: by the estimated noise, if an output "
+       "is .png or .tif",
        ValueSpec::text()
            .bind(options.smoothing, readVolumeSmoothing)
            .withDefault("auto")
