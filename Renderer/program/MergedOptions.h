@@ -28,9 +28,10 @@ struct PresetOptions {
 };
 
 /// Merges given options with those of the preset, and replaces the name "auto" by the chosen one.
-/// Without a given focus, it becomes all segments that the preset knows in the input. Without
-/// a segmentation, the preset's options of clip and materials are dropped. A given --clip overrides all clip options
-/// of the preset. Throws Error: usage; input, also if the preset knows none of the segments.
+/// Without a given focus, it becomes all segments that the preset knows in the input. Without a
+/// segmentation, the preset's options of clip and materials are dropped. A given --clip overrides
+/// all clip options of the preset. Throws Error: usage; input, also if the preset knows none of the
+/// segments.
 PresetOptions mergePreset(const OptionValues& given, const Input& input);
 
 RenderOptions makeRenderOptions(const PresetOptions& merged);

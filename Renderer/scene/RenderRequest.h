@@ -57,8 +57,8 @@ struct FocusRequest {
   /// Applies an OrganMargin to each segment of the focus if the volume seems to be CT.
   bool hasOrganMargin = true;
   double contextExtinction = 1.0; ///< factor of the extinction outside the focus, 0 to 1
-  /// Factor of the color saturation outside the focus, 0 to 1. By default 1 with materials, else
-  /// chosen for contrast (Contrast.h).
+  /// Factor of the color saturation outside the focus, 0 to 1. By default 1 with materials, which
+  /// adjust the context's colors themselves, else defaultContextSaturation (Contrast.h).
   std::optional<double> contextSaturation = {};
 
   bool operator==(const FocusRequest&) const = default;
@@ -95,7 +95,7 @@ struct RenderRequest {
   std::optional<std::string> labels = {};       ///< names of label values (LabelSearch.h)
   std::vector<std::string> focus = {};          ///< ids, names or label values
   /// "none", "library", "contrast", or a file. By default "library" in CT if a focus segment has a
-  /// known material and no context saturation is given, else "none".
+  /// known material, else "none".
   std::optional<std::string> materials = {};
   std::vector<std::string> materialChanges = {}; ///< arguments of parseMaterialChange
   std::optional<std::string> transfer =

@@ -18,7 +18,7 @@ constexpr const char* skinMaterial = "skin";
 constexpr int skinPriority = 1;
 
 /// Material of each segment after the changes. Around a focus whose colors are adjusted, segments
-/// have no palette colors, which would be the loudest of the image.
+/// have no palette colors, which would be the most vivid of the image.
 std::vector<SegmentMaterial> collectMaterials(const Segmentation& segmentation,
                                               const NamedMaterials& materials,
                                               const std::vector<std::string>& changes) {

@@ -21,7 +21,7 @@
 // In views along an axis of the focus's grid, ray maxima lie on planes of voxels. Their depths then
 // jump by a voxel along the outline, and the surface has notches and pleats. After smoothHalo(),
 // the halo has their mean along the outline, and rays that miss follow the buffer. The surface may
-// then have a step at the outline, where the focus is as good as parallel to the ray.
+// then have a step at the outline, where the focus is nearly parallel to the ray.
 //
 // The depth bounds of a cell contain all depths at which its rays can hit the focus; points outside
 // them need no query. In an inner cell, where all samples are focus, they are the depth range of

@@ -162,7 +162,7 @@ void drawEntry(Canvas& sheet, int left, int top, int boxHeight, const Thumbnail&
     sheet.drawImage(left + (boxWidth - image->width()) / 2, top + (boxHeight - image->height()) / 2,
                     *image);
   int line = top + margin;
-  constexpr double characterWidth = 0.6 * textSize; // of most texts less
+  constexpr double characterWidth = 0.6 * textSize; // less for most texts
   constexpr auto lineLength = static_cast<std::size_t>((boxWidth - 2 * margin) / characterWidth);
   if (!thumbnail.problem.empty())
     for (const std::string& text : split(wrapLines(thumbnail.problem, lineLength), '\n')) {

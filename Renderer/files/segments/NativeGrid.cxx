@@ -88,7 +88,7 @@ std::vector<std::int64_t> filterWindows(const std::vector<std::int64_t>& values,
 double estimateNativeEdge(const std::vector<std::int64_t>& changes, std::size_t width) {
   constexpr std::int64_t fewestChanges = 16; // typical of planes that count
   constexpr std::size_t fewestPlanes = 30;
-  constexpr std::int64_t emptyRatio = 8; // a plane with so many times fewer is empty
+  constexpr std::int64_t emptyRatio = 8; // a plane with fewer by this factor is empty
   constexpr double fewestEmpty = 0.25;   // fraction; shapes, such as boxes, have empty planes, too
   const std::vector<std::int64_t> greatest = filterWindows(
       changes, width / 2, [](const auto& window) { return std::ranges::max(window); });

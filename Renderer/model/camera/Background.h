@@ -19,7 +19,7 @@ struct Background {
     return {Kind::gradient, Rgb::Zero(), bottom, top};
   }
 
-  /// Default background: nearly black, as in an operating theatre's spotlight.
+  /// Default background: nearly black, as around the spotlight of an operating theater.
   static Background makeDark() { return {Kind::color, Rgb(0.004, 0.0042, 0.005)}; }
   /// Middle gray, on which both dark and light tissue stand out.
   static Background makeGray() { return {Kind::color, Rgb::Constant(0.18)}; }

@@ -130,7 +130,7 @@ private:
     std::int64_t begin, end;
   };
 
-  /// Voxels of a row that are in the volume. What lies beyond it is not seen.
+  /// Voxels of a row that are in the volume. Others do not count.
   Range findInVolume(std::int64_t y, std::int64_t z) const {
     const Vec3 start = m_toVolume * Size3(0, y, z).cast<double>(),
                step = m_toVolume.linear().col(0);
