@@ -19,7 +19,7 @@ enum class FlagKind {
   numbers,      ///< finite numbers, separated by commas
   size,         ///< two integers, WxH
   wordOrNumbers,
-  resource      ///< a name, numbers, a JSON text, or a file name
+  resource ///< a name, numbers, a JSON text, or a file name
 };
 
 struct Flag {

@@ -38,8 +38,8 @@ qSlicerFenestraLook::qSlicerFenestraLook(QWidget* parent)
   d->setupUi(this);
   setItemData(d->TransferBox, {"", "ct-anatomy", "ct-contrast", "ct-lung", "ct-bone", "ct-skin",
                                "ct-soft", "ct-skeleton", "mr-anatomy", "mr-knee", "us-fetal"});
-  setItemData(d->RigBox, {"", "theatre-wet", "theatre", "cinema", "studio", "headlight", "soft",
-                          "amber"});
+  setItemData(d->RigBox,
+              {"", "theatre-wet", "theatre", "cinema", "studio", "headlight", "soft", "amber"});
   setItemData(d->BackgroundBox, {"dark", "gradient", "gray", "100,100,100", "transparent"});
   setItemData(d->ToneBox, {defaultTone, "photographic"});
   d->defaultTransfer = d->TransferBox->itemText(0);

@@ -115,8 +115,8 @@ inline double clipWeight(const Clip& clip, const Vec3& world) {
   return std::visit([&](const auto& kind) { return clipWeight(kind, world); }, clip);
 }
 
-/// Length, mm^-1, of the gradient that a soft cut adds in hybrid shading: 92 % of the scatterings in
-/// an opaque cut (1 - exp(-25 gamma^3 0.8), gamma 0.5) are then at a surface. With half of the
+/// Length, mm^-1, of the gradient that a soft cut adds in hybrid shading: 92 % of the scatterings
+/// in an opaque cut (1 - exp(-25 gamma^3 0.8), gamma 0.5) are then at a surface. With half of the
 /// gradient of the clip weight, 0.5 / softness, a cut softened over 2 mm had 54 %, and looked dull.
 inline constexpr double cutSlope = 0.8;
 

@@ -16,7 +16,8 @@ namespace fenestra {
 /// - `.exr`: all channels as 32-bit float, and the header as string attributes "fenestra.<key>".
 /// - `.nrrd`: R, G, B, A (A = 1 if missing) as a float vector volume of one slice, which lies on
 ///   `plane` in world space. If present, Z goes to the scalar volume "<stem>-Z.nrrd", and
-///   denoised.R, G, B, A to the vector volume "<stem>-denoised.nrrd". The header's "volume" is a key.
+///   denoised.R, G, B, A to the vector volume "<stem>-denoised.nrrd". The header's "volume" is a
+///   key.
 /// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through the display transform, with straight
 ///   alpha if any pixel is not opaque, and marks, placed by `plane`. A comment holds tone, exposure
 ///   and the header's "filter" and "volume".

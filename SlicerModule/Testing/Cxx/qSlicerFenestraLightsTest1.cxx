@@ -27,12 +27,10 @@ int checkRigs() {
     CHECK_STD_STRING(lights.last().toObject()["type"].toString().toStdString(),
                      rig == "cinema" || rig.rfind("theatre", 0) == 0 ? "sky" : "environment");
   }
-  const std::map<QString, Has> expected = {{"cinema", {true, true, true, true}},
-                                           {"theatre-wet", {true, true, true, true}},
-                                           {"amber", {true, true, false, true}},
-                                           {"headlight", {true, false, false, true}},
-                                           {"soft", {false, false, false, true}},
-                                           {"nothing", {false, false, false, false}}};
+  const std::map<QString, Has> expected = {
+      {"cinema", {true, true, true, true}},  {"theatre-wet", {true, true, true, true}},
+      {"amber", {true, true, false, true}},  {"headlight", {true, false, false, true}},
+      {"soft", {false, false, false, true}}, {"nothing", {false, false, false, false}}};
   for (const auto& [rig, has] : expected)
     CHECK_BOOL(findLights(rig) == has, true);
   const Strengths others = {0.5, 2.0, 0.0, 1.0}; // of lights that these rigs lack

@@ -57,13 +57,13 @@ int checkLookDefaults() {
   CHECK_BOOL(takeFlags(look) == dark, true);
   look.show(dark, {}, false);
   CHECK_BOOL(takeFlags(look) == dark, true);
-  for (const char* preset :
-       {"ct-anatomy", "ct-contrast", "ct-lung", "ct-bone", "ct-skin", "ct-soft", "ct-skeleton",
-        "mr-anatomy", "mr-knee", "us-fetal"}) {
+  for (const char* preset : {"ct-anatomy", "ct-contrast", "ct-lung", "ct-bone", "ct-skin",
+                             "ct-soft", "ct-skeleton", "mr-anatomy", "mr-knee", "us-fetal"}) {
     choose(look, "TransferBox", preset);
     CHECK_STD_STRING(takeFlags(look)["transfer"], std::string(preset));
   }
-  for (const char* rig : {"theatre-wet", "theatre", "cinema", "studio", "headlight", "soft", "amber"}) {
+  for (const char* rig :
+       {"theatre-wet", "theatre", "cinema", "studio", "headlight", "soft", "amber"}) {
     choose(look, "RigBox", rig);
     CHECK_STD_STRING(takeFlags(look)["lights"], std::string(rig));
   }
