@@ -211,7 +211,8 @@ SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
     const bool isNode = name == "volume" || name == "segmentation";
     const std::string value =
         isNode ? node.referenceId(name) : option.resolveAlias(findStoredValue(node, option));
-    if (!isImageOption(option) || value.empty() || isReplaced(option, explicitValues))
+    if (!isImageOption(option) || value.empty() || isReplaced(option, explicitValues) ||
+        (given.has("paper") && isPaperCondition(name)))
       continue;
     if (const std::string reason = findRejectionReason(input, name, value); reason.empty())
       addStoredValue(option, value, merged);

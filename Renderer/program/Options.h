@@ -151,7 +151,7 @@ constexpr OverrideGroup parentGroup(OverrideGroup group) {
 
 /// What an option requires to have an effect: a focus, any clip, labels (a focus or materials), or
 /// one kind of clip. Without it the option is rejected.
-enum class Requires { nothing, focus, labels, clip, plane, hole, ghost, surface, spline };
+enum class Requires { nothing, focus, labels, clip, plane, hole, ghost, surface, spline, exact };
 
 /// Names of an option. Every place that reads names (command line, scenes, presets, tables) accepts
 /// all long ones; values are stored under the canonical one.

@@ -1,10 +1,14 @@
 #include "program/PaperConditions.h"
 
+#include "base/Text.h"
+
+#include <algorithm>
+
 namespace fenestra {
 namespace {
 
 /// What an option needs to have an effect.
-enum class Needs { nothing, focus, surface, spline };
+enum class Needs { nothing, labels, focus, surface, exact, spline };
 
 struct Condition {
   const char* name;
@@ -14,11 +18,11 @@ struct Condition {
 
 constexpr Condition conditions[] = {
     {"clip-boundary", "spline", Needs::surface},
-    {"clip-outline", "traced", Needs::surface},
+    {"clip-outline", "traced", Needs::exact},
     {"control-points", "50", Needs::spline},
     {"spline-smoothing", "0.5", Needs::spline},
     {"clip-softness", "0", Needs::focus},
-    {"label-smoothing", "0", Needs::focus},
+    {"label-smoothing", "0", Needs::labels},
     {"margin", "0", Needs::focus},
     {"materials", "none", Needs::nothing},
     {"context-saturation", "1", Needs::focus},
@@ -35,9 +39,14 @@ bool hasWord(const OptionValues& values, const std::string& name,
 bool meets(const OptionValues& values, Needs needs) {
   if (needs == Needs::nothing)
     return true;
-  const bool isSurface = hasWord(values, "clip", {"auto", "surface", "ghost"});
-  return values.has("focus") && (needs == Needs::focus || isSurface) &&
-         (needs != Needs::spline || hasWord(values, "clip-boundary", {"spline"}));
+  if (needs == Needs::labels)
+    return values.has("focus") || !hasWord(values, "materials", {"none"});
+  if (needs == Needs::focus || !values.has("focus"))
+    return values.has("focus");
+  if (!hasWord(values, "clip", {"auto", "surface", "ghost"}))
+    return false;
+  const bool isSpline = hasWord(values, "clip-boundary", {"spline"});
+  return needs == Needs::surface || isSpline == (needs == Needs::spline);
 }
 
 } // namespace
@@ -48,6 +57,10 @@ std::string describePaperConditions() {
       "Renders under the conditions of the paper, with equal optical properties for focus "
       "and context and without smoothing: ",
       join(conditions, " ", describe), "; other options override them");
+}
+
+bool isPaperCondition(const std::string& name) {
+  return std::ranges::any_of(conditions, [&](const Condition& one) { return name == one.name; });
 }
 
 OptionValues addPaperConditions(OptionValues values,

@@ -13,4 +13,7 @@ std::string describePaperConditions();
 OptionValues addPaperConditions(OptionValues values,
                                 const std::function<bool(const std::string& name)>& isGiven);
 
+/// True for an option that --paper stands for.
+bool isPaperCondition(const std::string& name);
+
 } // namespace fenestra

@@ -108,7 +108,7 @@ struct RenderOptionTable {
        "depth of each point of the outline) or smooth (at the mean depth along the outline)",
        ValueSpec::choice(surface.outline,
                          {{"traced", Outline::traced}, {"smooth", Outline::smooth}}),
-       OverrideGroup::boundary, Requires::surface},
+       OverrideGroup::boundary, Requires::exact},
       {"control-points", "N", clipGroup,
        "Control points of the clipping spline, on the outline of the focus, 3 to 1000",
        ValueSpec::integer(3, 1000).bind(surface.controlPoints), OverrideGroup::boundary,

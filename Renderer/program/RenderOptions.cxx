@@ -67,10 +67,14 @@ std::string_view findNoEffectReason(Requires requirement, bool hasFocus, bool ha
     return "used only with --clip hole; add that, or omit it";
   if (requirement == Requires::ghost && mode != ClipMode::ghost)
     return "used only with --clip ghost; add that, or omit it";
-  if ((requirement == Requires::surface || requirement == Requires::spline) && !isSurface)
+  if ((requirement == Requires::surface || requirement == Requires::spline ||
+       requirement == Requires::exact) &&
+      !isSurface)
     return "used only with --clip surface and ghost; omit it";
   if (requirement == Requires::spline && boundary != Boundary::spline)
     return "used only with --clip-boundary spline; add that, or omit it";
+  if (requirement == Requires::exact && boundary != Boundary::exact)
+    return "used only with --clip-boundary exact; omit one of them";
   return "";
 }
 

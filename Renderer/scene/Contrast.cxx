@@ -32,11 +32,6 @@ Rgb toDisplayLight(const Rgb& reflectance) {
 
 } // namespace
 
-double Contrast::score() const {
-  constexpr double normal = 20.0, colorBlind = 12.0;
-  return std::min({deltaE[0] / normal, deltaE[1] / colorBlind, deltaE[2] / colorBlind});
-}
-
 Contrast measureContrast(const Rgb& focus, const Rgb& context,
                          double (*difference)(const Lab&, const Lab&)) {
   Contrast contrast = {};

@@ -16,9 +16,6 @@ struct Contrast {
   std::array<double, 4> deltaE; ///< indexed by ColorVision
   double deltaL;                ///< absolute difference of CIELAB lightness
 
-  /// Smallest deltaE as a fraction of the required one, which is 20 for normal vision and 12 for
-  /// each of the two common kinds of color blindness.
-  double score() const;
   /// Smaller deltaE of the two common kinds of color blindness.
   double colorBlind() const { return std::min(deltaE[1], deltaE[2]); }
 };

@@ -100,6 +100,8 @@ ScanContent describeScan(const Volume& volume, const Segmentation& segmentation,
 
 std::optional<std::string> chooseTransferPreset(const Volume& volume, const ScanContent& content) {
   constexpr double leastBlood = 130.0; // HU, with contrast agent
+  if (volume.minimum == volume.maximum)
+    return std::nullopt; // no surfaces
   if (isPlausibleModality(Modality::ct, volume)) {
     if (!content.hasSegments)
       return "ct-skin";

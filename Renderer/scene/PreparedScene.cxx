@@ -58,7 +58,8 @@ void PreparedScene::prepare() {
       m_focus.get(currentSegments(), r.focus, r.focusStyle.shaping, raw->volume.grid);
   if (!r.transfer)
     m_sceneTransfer.get(m_input, r.volume, {raw->volume.minimum, raw->volume.maximum});
-  if (m_segments.result() && needsContent(m_namedTransfer.result(), m_sceneTransfer.result()))
+  if (m_segments.result() &&
+      needsContent(raw, m_namedTransfer.result(), m_sceneTransfer.result(), r.transferModality))
     m_content.get(raw, m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus);
   const auto transfer =
       m_transfer.get(raw, m_namedTransfer.result(), m_sceneTransfer.result(), m_content.result(),
@@ -74,10 +75,12 @@ void PreparedScene::prepare() {
     m_view.get(raw, settings, focus, transfer);
   const auto minMaxGrid =
       m_minMaxGrid.get(volume, MajorantGrid::requiredPadding(transfer->function));
-  // By the raw volume, so that a request with other outputs shows the same frame.
-  const auto rawMinMaxGrid =
-      volume == raw ? minMaxGrid : m_rawMinMaxGrid.get(raw, minMaxGrid->padding());
-  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.get(raw, rawMinMaxGrid, transfer);
+  Box bounds;
+  if (!settings->camera) { // by the raw volume: requests with other outputs show the same frame
+    const auto rawMinMax =
+        volume == raw ? minMaxGrid : m_rawMinMaxGrid.get(raw, minMaxGrid->padding());
+    bounds = *m_occupiedBounds.get(raw, rawMinMax, transfer);
+  }
   const auto camera =
       m_camera.get(r.view, r.width, r.height, raw, settings, bounds, focus, m_view.result());
   const auto placed = m_lights.get({lights, camera, focus}, raw);
@@ -103,7 +106,7 @@ VolumeHandle PreparedScene::smooth() {
       m_smoothed.get(m_volume.result(), r.smoothing,
                      findModality(m_volume->volume, r.transferModality, m_transfer->source));
   if (smoothed->input && m_transfer->islands)
-    m_islands.get(currentVolume(), m_transfer.result());
+    m_islands.get(currentVolume(), m_transfer.result(), m_focus.result());
   return currentVolume();
 }
 
@@ -244,6 +247,8 @@ std::vector<Message> PreparedScene::warnings() const {
     warnings.push_back(makeMessage(ErrorCode::emptyCrop, "crop box",
                                    "lies outside the volume, so the image is empty"));
   append(m_clip->warnings, warnings);
+  if (m_smoothed.result())
+    append(m_smoothed->warnings, warnings);
   return warnings;
 }
 

@@ -212,8 +212,12 @@ FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<st
   return {segments->segmentation.makeFocusMask(names, volume, shaping)};
 }
 
-bool needsContent(const Handle<NamedTransfer>& named, const Handle<SceneTransfer>& scene) {
-  return named ? named->transfer.scalars == TransferFile::Scalars::tissues : !scene->transfer;
+bool needsContent(const VolumeHandle& volume, const Handle<NamedTransfer>& named,
+                  const Handle<SceneTransfer>& scene, const std::optional<Modality>& modality) {
+  if (!named)
+    return !scene->transfer;
+  return named->transfer.scalars == TransferFile::Scalars::tissues ||
+         (modality && !isPlausibleModality(*modality, volume->volume));
 }
 
 ScanContent findContent(const VolumeHandle& volume, const Handle<SegmentsInput>& segments,

@@ -52,7 +52,8 @@ FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<st
                      const MaskShaping& shaping, const Grid& volume);
 
 /// True if chooseTransfer() depends on the content of the scan.
-bool needsContent(const Handle<NamedTransfer>& named, const Handle<SceneTransfer>& scene);
+bool needsContent(const VolumeHandle& volume, const Handle<NamedTransfer>& named,
+                  const Handle<SceneTransfer>& scene, const std::optional<Modality>& modality);
 
 ScanContent findContent(const VolumeHandle& volume, const Handle<SegmentsInput>& segments,
                         const Handle<std::vector<bool>>& hasVoxels,

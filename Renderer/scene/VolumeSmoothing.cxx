@@ -13,19 +13,19 @@ namespace fenestra {
 namespace {
 
 /// Compares with physical memory, since Linux grants more and kills the process when it is used.
-void checkMemory(const Volume& volume) {
+std::optional<Message> findMemoryProblem(const Volume& volume) {
   constexpr double gigabyte = 1e9;
   const double needed = std::visit(
       [](const auto& voxels) {
-        return 2.0 * static_cast<double>(voxels.size() * sizeof(voxels[0]));
+        return 3.0 * static_cast<double>(voxels.size() * sizeof(voxels[0]));
       },
       volume.voxels);
   const double available = physicalMemory();
-  if (needed > available)
-    throw outputError(ErrorCode::outOfMemory, "--volume-smoothing",
-                      "the volume and its smoothed copy need ", toString(needed / gigabyte, 3),
-                      " GB of memory, but this machine has ", toString(available / gigabyte, 3),
-                      "; use --volume-smoothing off");
+  if (needed <= available)
+    return std::nullopt;
+  return makeMessage(ErrorCode::outOfMemory, volume.name, "smoothing needs ",
+                     toString(needed / gigabyte, 3), " GB of memory, but this machine has ",
+                     toString(available / gigabyte, 3), ", so the volume is not smoothed");
 }
 
 double mean(const Volume& volume) {
@@ -52,10 +52,39 @@ double chooseStrength(Modality modality) {
   return modality == Modality::ct ? 1.1 : 1.0;
 }
 
+/// True for runs with a voxel in the focus, which must not vanish.
+class FocusOverlap {
+public:
+  FocusOverlap(const Mask& focus, const Grid& volume)
+      : m_focus(focus),
+        m_size(volume.size),
+        m_toFocus(focus.grid.worldToIndex * volume.indexToWorld) {}
+
+  bool operator()(const RunOfIsland& run) const {
+    const Vec3 last = (m_focus.grid.size.array() - 1).cast<double>();
+    for (std::int64_t i = run.begin; i < run.end; ++i) {
+      const Size3 voxel(i % m_size.x(), i / m_size.x() % m_size.y(), i / m_size.x() / m_size.y());
+      const Vec3 at = (m_toFocus * Vec3(voxel.cast<double>())).array().round();
+      if ((at.array() >= 0.0).all() && (at.array() <= last.array()).all() &&
+          m_focus.voxels[linearIndex(at.cast<std::int64_t>(), m_focus.grid.size)] >=
+              m_focus.threshold())
+        return true;
+    }
+    return false;
+  }
+
+private:
+  const Mask& m_focus;
+  Size3 m_size;
+  Affine m_toFocus;
+};
+
 } // namespace
 
 Modality findModality(const Volume& volume, const std::optional<Modality>& transferModality,
                       const std::string& transferName) {
+  if (volume.modality)
+    return *volume.modality;
   if (isPlausibleModality(Modality::ct, volume))
     return Modality::ct;
   return transferModality == Modality::us || transferName.starts_with("us-") ? Modality::us
@@ -65,14 +94,16 @@ Modality findModality(const Volume& volume, const std::optional<Modality>& trans
 SmoothedVolume smoothVolume(const VolumeHandle& read, const SmoothingRequest& request,
                             Modality modality) {
   const Volume& volume = read->volume;
-  checkMemory(volume);
+  if (const auto problem = findMemoryProblem(volume))
+    return {.warnings = {*problem}};
   const bool isGiven = request.kind == SmoothingRequest::Kind::given;
-  SmoothedVolume result{{}, {.isLogarithmic = modality == Modality::us}};
+  SmoothedVolume result{.report = {.isLogarithmic = modality == Modality::us}};
   SmoothingReport& report = result.report;
   report.noise = isGiven ? request.noise : estimateNoise(volume, modality);
   if (isGiven && report.isLogarithmic) // derivative of the logarithm at the mean
     report.noise /= 1.0 + mean(volume) - volume.minimum;
-  if (!isGiven && report.noise < findLeastNoise(volume, modality))
+  if ((!isGiven && report.noise < findLeastNoise(volume, modality)) ||
+      volume.minimum == volume.maximum)
     return result;
   report.strength = chooseStrength(modality) * report.noise;
   result.input = {
@@ -80,11 +111,14 @@ SmoothedVolume smoothVolume(const VolumeHandle& read, const SmoothingRequest& re
   return result;
 }
 
-SmoothedVolume dropIslands(const VolumeHandle& smoothed, const Handle<TransferChoice>& transfer) {
+SmoothedVolume dropIslands(const VolumeHandle& smoothed, const Handle<TransferChoice>& transfer,
+                           const FocusHandle& focus) {
   const std::optional<double> onset = findOnset(transfer->function);
   if (!onset)
     return {};
-  const Islands islands = findIslands(smoothed->volume, *onset, *transfer->islands);
+  Islands islands = findIslands(smoothed->volume, *onset, *transfer->islands);
+  if (focus->mask)
+    std::erase_if(islands.runs, FocusOverlap(*focus->mask, smoothed->volume.grid));
   if (islands.runs.empty())
     return {};
   SmoothedVolume result{*smoothed, {.islands = islands.count, .islandVolume = islands.volume}};
@@ -112,7 +146,7 @@ std::string describe(const SmoothingReport& report) {
   for (const LesionContrast& lesion : lesionContrasts)
     line << (&lesion == lesionContrasts ? " of " : ", ") << lesion.diameter << " mm keep "
          << lesion.percent << " %";
-  line << " of their contrast (measured on one CT); --volume-smoothing off leaves the volume raw";
+  line << " of their contrast (measured on one CT)";
   return line.str();
 }
 

@@ -29,21 +29,24 @@ inline constexpr LesionContrast lesionContrasts[] = {{4, 47}, {6, 73}, {8, 90}};
 struct SmoothedVolume {
   std::optional<VolumeInput> input = {}; ///< empty: the volume is unchanged
   SmoothingReport report = {};
+  std::vector<Message> warnings = {};
 };
 
-/// Modality of a volume, for its filter: CT by its range, ultrasound by the preset's modality or
-/// the name of the transfer function, else MR.
+/// Modality of a volume, for its filter: that of its file, else CT by its range, ultrasound by the
+/// preset's modality or the name of the transfer function, else MR.
 Modality findModality(const Volume& volume, const std::optional<Modality>& transferModality,
                       const std::string& transferName);
 
 /// Non-local means with the noise of the request, else with estimated noise; then noise below 3 HU
-/// or, for other modalities, 0.3 % of the range leaves the volume unchanged. Throws Error (output)
-/// if the machine has less memory than two volumes need.
+/// or, for other modalities, 0.3 % of the range leaves the volume unchanged, as does, with
+/// a warning, a machine with less memory than three volumes need.
 SmoothedVolume smoothVolume(const VolumeHandle& volume, const SmoothingRequest& request,
                             Modality modality);
 
-/// Removes islands of opacity that are smaller than TransferChoice::islands, which must be set.
-SmoothedVolume dropIslands(const VolumeHandle& volume, const Handle<TransferChoice>& transfer);
+/// Removes islands of opacity that are smaller than TransferChoice::islands, which must be set,
+/// except what is in the focus.
+SmoothedVolume dropIslands(const VolumeHandle& volume, const Handle<TransferChoice>& transfer,
+                           const FocusHandle& focus);
 
 /// Greatest scalar up to which the medium is transparent; nullopt: it begins opaque.
 std::optional<double> findOnset(const TransferFunction& transfer);

@@ -7,13 +7,15 @@
 #include <QMap>
 #include <QSignalBlocker>
 
-#include <algorithm>
 
 class qSlicerFenestraMarginsPrivate : public Ui_qSlicerFenestraMargins {
   Q_DECLARE_TR_FUNCTIONS(qSlicerFenestraMargins)
 
 public:
-  bool isOnePerSegment() const { return MarginEachBox->isChecked() && boxes.size() > 1; }
+  bool isAutomatic() const { return MarginAutoBox->isChecked(); }
+  bool isOnePerSegment() const {
+    return !isAutomatic() && MarginEachBox->isChecked() && boxes.size() > 1;
+  }
   void showEach();
 
   QList<qSlicerFenestraSegment> focus;
@@ -23,8 +25,11 @@ public:
 
 void qSlicerFenestraMarginsPrivate::showEach() {
   MarginEachBox->setVisible(boxes.size() > 1);
-  qSlicerFenestraWidgets::setEnabled(MarginBox, !isOnePerSegment(),
-                                     tr("Each segment has its own margin below"));
+  const QString chosen = tr("The margin is automatic");
+  qSlicerFenestraWidgets::setEnabled(MarginEachBox, !isAutomatic(), chosen);
+  qSlicerFenestraWidgets::setEnabled(
+      MarginBox, !isAutomatic() && !isOnePerSegment(),
+      isAutomatic() ? chosen : tr("Each segment has its own margin below"));
   for (QDoubleSpinBox* box : boxes)
     qSlicerFenestraWidgets::showRow(Rows, box, isOnePerSegment());
 }
@@ -35,6 +40,10 @@ qSlicerFenestraMargins::qSlicerFenestraMargins(QWidget* parent)
   d->setupUi(this);
   connect(d->MarginBox, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
           &qSlicerFenestraMargins::changed);
+  connect(d->MarginAutoBox, &QCheckBox::toggled, this, [this, d] {
+    d->showEach();
+    emit changed();
+  });
   connect(d->MarginEachBox, &QCheckBox::toggled, this, [this, d](bool each) {
     if (each)
       for (QDoubleSpinBox* box : d->boxes)
@@ -54,7 +63,9 @@ void qSlicerFenestraMargins::show(const QString& flag, const QList<qSlicerFenest
   build(focus);
   const bool each = numbers.size() > 1 && numbers.size() == focus.size();
   {
-    const QSignalBlocker eachBlocker(d->MarginEachBox); // the numbers are set below
+    const QSignalBlocker autoBlocker(d->MarginAutoBox),
+        eachBlocker(d->MarginEachBox); // the numbers are set below
+    d->MarginAutoBox->setChecked(flag.isEmpty() || flag == "auto");
     d->MarginEachBox->setChecked(each);
   }
   if (!each)
@@ -66,15 +77,15 @@ void qSlicerFenestraMargins::show(const QString& flag, const QList<qSlicerFenest
 
 QString qSlicerFenestraMargins::flag() const {
   Q_D(const qSlicerFenestraMargins);
+  if (d->isAutomatic())
+    return {};
   QStringList numbers;
   if (d->isOnePerSegment())
     for (const QDoubleSpinBox* box : d->boxes)
       numbers << QString::number(box->value());
   else
     numbers << QString::number(d->MarginBox->value());
-  const bool none = std::all_of(numbers.begin(), numbers.end(),
-                                [](const QString& number) { return number.toDouble() == 0.0; });
-  return none && !d->MarginEachBox->isChecked() ? QString() : numbers.join(',');
+  return numbers.join(',');
 }
 
 void qSlicerFenestraMargins::build(const QList<qSlicerFenestraSegment>& focus) {

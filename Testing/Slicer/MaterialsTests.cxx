@@ -142,7 +142,7 @@ TEST_F(SlicerMaterials, RendererReportsItsChoicesAndItsLibrary) {
   EXPECT_EQ(cell<QComboBox>(2, material).itemText(0), "Automatic");
   EXPECT_TRUE(cell<QComboBox>(2, material).toolTip().contains("by its own color"));
   EXPECT_EQ(cell<QComboBox>(0, material).count(), knownMaterials().library.size() + 1);
-  EXPECT_EQ(shownColor(0), "#963e2e");
+  EXPECT_EQ(shownColor(0), "#6a3932");
   EXPECT_EQ(shownColor(2), "#3366cc"); // the segment's own color
 }
 
@@ -184,7 +184,7 @@ TEST_F(SlicerMaterials, OnlyChangesAreArguments) {
   EXPECT_EQ(shownColor(0), "#abcdef");
   setMaterial(0, "vein");
   const Strings vein = {"--material=Segment_1: material=vein", "--materials=library"};
-  EXPECT_EQ(shownColor(0), "#4668b2") << "a new material replaces the color";
+  EXPECT_EQ(shownColor(0), "#605b78") << "a new material replaces the color";
   EXPECT_EQ(arguments(), vein);
   setClip(0, false);
   setClip(0, true);
@@ -192,7 +192,7 @@ TEST_F(SlicerMaterials, OnlyChangesAreArguments) {
   EXPECT_FALSE(cell<QToolButton>(1, reset).isEnabled());
   cell<QToolButton>(0, reset).click();
   EXPECT_EQ(arguments(), (Strings{"--materials=library"}));
-  EXPECT_EQ(shownColor(0), "#963e2e");
+  EXPECT_EQ(shownColor(0), "#6a3932");
 }
 
 /// Texts of a scene are not interpreted as HTML, and invalid colors are ignored.
@@ -202,7 +202,7 @@ TEST_F(SlicerMaterials, TextsOfASceneAreEscaped) {
   table.setKnownMaterials(hostile);
   EXPECT_TRUE(cell<QComboBox>(0, material).toolTip().contains("&lt;img"));
   table.show({{"materials", "contrast"}, {"material", "Segment_1: color=<b>red</b>"}});
-  EXPECT_EQ(shownColor(0), "#963e2e");
+  EXPECT_EQ(shownColor(0), "#6a3932");
   EXPECT_FALSE(cell<QToolButton>(0, color).toolTip().contains("<b>"));
 }
 

@@ -37,7 +37,8 @@ RenderOptions readArguments(const ReferenceCase& c) {
   for (std::string line; std::getline(file, line);)
     if (!line.empty())
       arguments.push_back(line);
-  arguments.insert(arguments.end(), {"--samples", std::to_string(c.samples), "--seed", "42"});
+  arguments.insert(arguments.end(), {"--samples", std::to_string(c.samples), "--seed", "42",
+                                     "--volume-smoothing", "off"});
   if (c.noise > 0.0)
     arguments.insert(arguments.end(), {"--noise", std::to_string(c.noise)});
   std::vector<char*> argv;

@@ -71,7 +71,8 @@ TEST(ErrorAdvice, CompleteMessages) {
             }),
             "a.json: g: is 3; it must be from -1 to 1");
   EXPECT_EQ(compose([] { findLights("sun"); }), "sun: no such file or preset; expected a file or "
-                                                "one of amber, cinema, headlight, soft, studio");
+                                                "one of amber, cinema, headlight, soft, studio, "
+                                                "theatre-wet, theatre");
   EXPECT_EQ(compose([] { readLabelNames("a.xlsx"); }),
             "a.xlsx: has no extension of a label table; give a .ctbl, .txt, .label, .json or .csv");
   EXPECT_EQ(compose([] { adjustView({.scale = 1.0}, {.projection = Projection::perspective}); }),

@@ -46,7 +46,9 @@ TEST(Islands, EqualThoseOfAFloodFill) {
   for (const double share : {0.02, 0.07, 0.12}) {
     const Volume volume = makeVoxels<std::int16_t>(
         makeScaledGrid({23, 17, 11}, {1.0, 1.0, 1.0}),
-        [&](const Size3& v) { return std::abs(normalNoise(1, v)) < 1.25 * share ? 300.0 : 20.0; });
+        [&](const Size3& v) { // the last slice is the greatest group
+          return v.z() == 10 || std::abs(normalNoise(1, v)) < 1.25 * share ? 300.0 : 20.0;
+        });
     const FloodFill expected(volume, 130, 12);
     const Islands islands = findIslands(volume, 130.0, 12.0);
     EXPECT_EQ(islands.count, expected.count);
@@ -57,28 +59,34 @@ TEST(Islands, EqualThoseOfAFloodFill) {
 }
 
 TEST(Islands, AreSmallerThanAVolumeInCubicMillimeters) {
-  const auto blocks = [](const Size3& v) { // of 8 and 27 voxels
+  const auto blocks = [](const Size3& v) { // of 8, 27 and 100 voxels
     const bool isSmall = (v.array() >= 1).all() && (v.array() <= 2).all();
     const bool isLarge = (v.array() >= 5).all() && (v.array() <= 7).all();
-    return isSmall || isLarge ? 500.0 : 0.0;
+    return isSmall || isLarge || v.x() == 9 ? 500.0 : 0.0;
   };
   Volume volume = makeVoxels<float>(makeScaledGrid({10, 10, 10}, {2.0, 2.0, 5.0}), blocks);
   const auto count = [&](double largest) { return findIslands(volume, 100.0, largest).count; };
   EXPECT_EQ(count(159.0), 0);
   EXPECT_EQ(count(161.0), 1);
   EXPECT_EQ(count(541.0), 2);
+  EXPECT_EQ(count(1e9), 2) << "not the greatest";
   EXPECT_NEAR(findIslands(volume, 100.0, 541.0).volume, 700.0, 1e-9);
   EXPECT_EQ(findIslands(volume, 500.0, 541.0).count, 0); // not above the onset
   removeIslands(volume, findIslands(volume, 100.5, 541.0), 100.5);
-  EXPECT_EQ(volume.maximum, 100.5);
+  const auto& voxels = std::get<LargeArray<float>>(volume.voxels);
+  EXPECT_EQ(std::ranges::count(voxels, 500.0F), 100);
+  EXPECT_EQ(std::ranges::count(voxels, 100.5F), 8 + 27);
 }
 
 TEST(Islands, OfIntegersAreLoweredToTransparentValues) {
   Volume volume =
-      makeVoxels<std::int16_t>(makeScaledGrid({3, 3, 3}, Vec3::Ones()),
-                               [](const Size3& v) { return v.sum() == 3 ? 9.0 : -7.0; });
+      makeVoxels<std::int16_t>(makeScaledGrid({3, 3, 6}, Vec3::Ones()), [](const Size3& v) {
+        return v.z() == 5 || (v.z() < 3 && v.sum() == 3) ? 9.0 : -7.0;
+      });
   removeIslands(volume, findIslands(volume, -0.5, 400.0), -0.5);
-  EXPECT_EQ(volume.maximum, -1.0);
+  const auto& voxels = std::get<LargeArray<std::int16_t>>(volume.voxels);
+  EXPECT_EQ(std::ranges::count(voxels, 9), 9);
+  EXPECT_EQ(std::ranges::count(voxels, -1), 7);
 }
 
 } // namespace

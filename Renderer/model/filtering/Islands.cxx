@@ -25,15 +25,16 @@ public:
         connectRow(y, z);
   }
 
-  /// Groups of less than `most` voxels; `voxelVolume` in mm^3.
+  /// Groups of less than `most` voxels, but not the largest; `voxelVolume` in mm^3.
   Islands findSmall(double most, double voxelVolume) {
     std::vector<std::int64_t> sizes(m_runs.size(), 0);
     for (std::size_t i = 0; i < m_runs.size(); ++i)
       sizes[findRoot(i)] += m_runs[i].end - m_runs[i].begin;
+    const auto largest = static_cast<std::size_t>(std::ranges::max_element(sizes) - sizes.begin());
     Islands islands;
     for (std::size_t i = 0; i < m_runs.size(); ++i) {
       const std::size_t root = findRoot(i);
-      if (static_cast<double>(sizes[root]) >= most)
+      if (static_cast<double>(sizes[root]) >= most || root == largest)
         continue;
       islands.runs.push_back(m_runs[i]);
       islands.volume += static_cast<double>(m_runs[i].end - m_runs[i].begin) * voxelVolume;

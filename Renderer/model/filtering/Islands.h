@@ -20,7 +20,7 @@ struct Islands {
 };
 
 /// Groups of voxels above `onset`, connected by faces, edges or corners, whose volume is less than
-/// `largest` mm^3.
+/// `largest` mm^3. The greatest group is none, so that a small subject does not vanish.
 Islands findIslands(const Volume& volume, double onset, double largest);
 
 /// Lowers the voxels of islands to `onset`, rounded down for integers. `volume`: of the same grid.

@@ -200,7 +200,12 @@ Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter) {
                                             : volume.maximum - volume.minimum;
   if (!(filter.strength > leastStrength * range) || range == 0.0)
     return volume;
-  Volume result{volume.grid, {}, 0.0, 0.0, volume.name, volume.warnings};
+  Volume result{.grid = volume.grid,
+                .voxels = {},
+                .name = volume.name,
+                .warnings = volume.warnings,
+                .modality = volume.modality,
+                .hasContrastAgent = volume.hasContrastAgent};
   std::visit([&](const auto& voxels) { result.voxels = filterVoxels(volume, voxels, filter); },
              volume.voxels);
   computeRange(result);

@@ -286,6 +286,10 @@ private:
 } // namespace
 
 OrganMargin findOrganMargin(const Mask& segment, const Volume& volume) {
+  constexpr double mostSteps = 64.0; // of a distance, and 2^28 voxels: bounds time and memory
+  if (deep > mostSteps * segment.grid.spacing().minCoeff() ||
+      segment.grid.voxelCount() > std::int64_t{1} << 28)
+    return {.isApplied = false, .kept = segment};
   const OrganTrimmer trimmer(segment, volume);
   const Marks removed = trimmer.findRemoved();
   OrganMargin margin{.isApplied = false, .kept = segment};
@@ -297,7 +301,8 @@ OrganMargin findOrganMargin(const Mask& segment, const Volume& volume) {
   for (std::size_t i = 0; i < removed.size(); ++i)
     margin.kept.voxels[i] = segment.voxels[i] && !removed[i];
   margin.kept.count -= count;
-  margin.volume = static_cast<double>(count) * segment.grid.spacing().prod();
+  margin.volume =
+      static_cast<double>(count) * std::abs(segment.grid.indexToWorld.linear().determinant());
   const std::vector<float> moved = trimmer.measureMovement(margin.kept.voxels);
   for (const float distance : moved)
     margin.mean += static_cast<double>(distance) / static_cast<double>(moved.size());

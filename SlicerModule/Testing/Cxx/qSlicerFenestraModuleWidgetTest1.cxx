@@ -163,6 +163,8 @@ int checkClipping(const Panel& panel) {
   panel.set("labelsmoothingBox", 0.8);
   panel.set("contextdensityBox", 40.0);
   panel.set("contextsaturationBox", 0.0);
+  panel.find<QCheckBox>("MarginAutoBox")->setChecked(false);
+  CHECK_STD_STRING(panel.flag("margin"), "0");
   panel.set("MarginBox", 1.0);
   const std::map<std::string, std::string> expected = {
       {"offset", "-2.5"},        {"soft", "3"},   {"labelsmoothing", "0.8"},
@@ -203,6 +205,7 @@ int checkMargins(const Panel& panel) {
   focus.item(1)->setCheckState(Qt::Checked);
   CHECK_BOOL(panel.isShown("MarginEachBox"), true);
   CHECK_BOOL(panel.isShown("Margin1"), false);
+  panel.find<QCheckBox>("MarginAutoBox")->setChecked(false);
   panel.find<QCheckBox>("MarginEachBox")->setChecked(true);
   panel.set("Margin0", 1.5);
   panel.set("Margin1", -0.5);
@@ -212,6 +215,8 @@ int checkMargins(const Panel& panel) {
   panel.settings()->SetFlag("margin", "4");
   CHECK_BOOL(panel.find<QCheckBox>("MarginEachBox")->isChecked(), false);
   CHECK_DOUBLE(panel.find<QDoubleSpinBox>("MarginBox")->value(), 4.0);
+  panel.settings()->SetFlag("margin", "auto");
+  CHECK_BOOL(panel.find<QCheckBox>("MarginAutoBox")->isChecked(), true);
   panel.settings()->SetFlags(before);
   return EXIT_SUCCESS;
 }
