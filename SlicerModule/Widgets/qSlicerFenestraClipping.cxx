@@ -130,8 +130,7 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
     selectData(d->ClipBox, findFlag(flags, "clip"));
   const QString now = d->mode(byPreset);
   if (clips && (now == "surface" || now == "ghost")) // the renderer's default, not the panel's
-    selectData(d->BoundaryBox,
-               flags.count("boundary") > 0 ? findFlag(flags, "boundary") : "exact");
+    selectData(d->BoundaryBox, flags.count("boundary") > 0 ? findFlag(flags, "boundary") : "exact");
   if (now == "hole")
     selectData(d->HoleBox, findFlag(flags, "hole"));
   if (now == "plane")

@@ -7,7 +7,6 @@
 #include <QMap>
 #include <QSignalBlocker>
 
-
 class qSlicerFenestraMarginsPrivate : public Ui_qSlicerFenestraMargins {
   Q_DECLARE_TR_FUNCTIONS(qSlicerFenestraMargins)
 
@@ -27,9 +26,9 @@ void qSlicerFenestraMarginsPrivate::showEach() {
   MarginEachBox->setVisible(boxes.size() > 1);
   const QString chosen = tr("The margin is automatic");
   qSlicerFenestraWidgets::setEnabled(MarginEachBox, !isAutomatic(), chosen);
-  qSlicerFenestraWidgets::setEnabled(
-      MarginBox, !isAutomatic() && !isOnePerSegment(),
-      isAutomatic() ? chosen : tr("Each segment has its own margin below"));
+  qSlicerFenestraWidgets::setEnabled(MarginBox, !isAutomatic() && !isOnePerSegment(),
+                                     isAutomatic() ? chosen
+                                                   : tr("Each segment has its own margin below"));
   for (QDoubleSpinBox* box : boxes)
     qSlicerFenestraWidgets::showRow(Rows, box, isOnePerSegment());
 }
