@@ -145,6 +145,8 @@ TEST(OrganMargin, IsNotAppliedToSmallOrMixedSegments) {
   Phantom small = makePhantom(10.0, {}, 0.3);
   EXPECT_FALSE(findOrganMargin(small.label, small.volume).isApplied) << "nothing is 8 mm deep";
   EXPECT_EQ(findOrganMargin(small.label, small.volume).kept.voxels, small.label.voxels);
+  const Phantom coarse = makePhantom(10.0, {}, 2.0); // voxels of 3 mm
+  EXPECT_FALSE(findOrganMargin(coarse.label, coarse.volume).isApplied);
   const Phantom mixed = makePhantom(90.0);
   EXPECT_FALSE(findOrganMargin(mixed.label, mixed.volume).isApplied);
   Phantom airy = makePhantom(10.0);

@@ -101,8 +101,9 @@ double findMode(std::vector<double> deviations) {
       histogram[static_cast<std::size_t>(reach + deviation / last * bins)] += 1.0;
   for (int bin = 0; bin < bins; ++bin)
     for (int k = -reach; k <= reach; ++k)
-      smooth[static_cast<std::size_t>(bin)] += std::exp(-0.5 * k * k / (sigma * sigma)) *
-                                               histogram[static_cast<std::size_t>(bin + reach + k)];
+      smooth[static_cast<std::size_t>(bin)] +=
+          std::exp(-0.5 * k * k / (sigma * sigma)) *
+          histogram[static_cast<std::size_t>(bin) + static_cast<std::size_t>(reach + k)];
   const auto mode = std::ranges::max_element(smooth) - smooth.begin();
   return last / bins * (static_cast<double>(mode) + 0.5);
 }

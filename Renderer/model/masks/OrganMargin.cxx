@@ -287,7 +287,10 @@ private:
 
 OrganMargin findOrganMargin(const Mask& segment, const Volume& volume) {
   constexpr double mostSteps = 64.0; // of a distance, and 2^28 voxels: bounds time and memory
-  if (deep > mostSteps * segment.grid.spacing().minCoeff() ||
+  const Vec3 spacing = segment.grid.spacing();
+  // Thick voxels would leave steps as deep as what is removed.
+  const bool isCoarse = 2.0 * spacing.maxCoeff() >= static_cast<double>(maxDepth);
+  if (isCoarse || deep > mostSteps * spacing.minCoeff() ||
       segment.grid.voxelCount() > std::int64_t{1} << 28)
     return {.isApplied = false, .kept = segment};
   const OrganTrimmer trimmer(segment, volume);

@@ -9,8 +9,8 @@
 namespace fenestra {
 
 struct OrganMargin {
-  /// False: the organ is too small or not of one tissue, or more than a third would be removed.
-  /// `kept` is then the segment.
+  /// False: the organ is too small or not of one tissue, voxels are 3 mm or thicker, or more than a
+  /// third would be removed. `kept` is then the segment.
   bool isApplied = false;
   Mask kept;                    ///< the segment without the removed voxels, on its grid
   double volume = 0.0;          ///< removed, mm^3

@@ -68,8 +68,9 @@ public:
   VoxelSet dilate(double radius) const {
     VoxelSet result(m_size, m_spacing), along = *this; // dilated along x
     std::int64_t reach = 0;
-    for (const auto& [wanted, offsets] : findOffsets(radius)) {
-      for (; reach < wanted; ++reach)
+    for (const auto& ring : findOffsets(radius)) {
+      const auto& offsets = ring.second; // clang 14 cannot capture a structured binding
+      for (; reach < ring.first; ++reach)
         along.dilateRows();
       tbb::parallel_for(std::int64_t{0}, m_size.z(), [&](std::int64_t z) {
         for (std::int64_t y = 0; y < m_size.y(); ++y)
