@@ -156,9 +156,9 @@ void addGlyph(const PlacedGlyph& glyph, TextBitmap& line) {
   const FT_Bitmap& bitmap = glyph.raster().bitmap;
   for (int y = 0; y < glyph.height(); ++y)
     for (int x = 0; x < glyph.width(); ++x) {
-      const auto row = static_cast<std::size_t>(glyph.top() - line.top + y);
-      const auto column = static_cast<std::size_t>(glyph.left() - line.left + x);
-      float& coverage = line.coverage[row * static_cast<std::size_t>(line.width) + column];
+      const std::int64_t row = std::int64_t{glyph.top()} - line.top + y;
+      const std::int64_t column = std::int64_t{glyph.left()} - line.left + x;
+      float& coverage = line.coverage[static_cast<std::size_t>(row * line.width + column)];
       coverage =
           std::max(coverage, static_cast<float>(bitmap.buffer[y * bitmap.pitch + x]) / 255.0F);
     }

@@ -134,7 +134,8 @@ int checkClipping(const Panel& panel) {
     CHECK_BOOL(panel.isShown(other), false);
   CHECK_STD_STRING(panel.flag("boundary"), "exact"); // the default of a first focus
   panel.settings()->SetFlag("boundary", "");         // like a scene that Fenestra did not save
-  CHECK_STD_STRING(panel.chosen("BoundaryBox").toStdString(), "spline");
+  CHECK_STD_STRING(panel.chosen("BoundaryBox").toStdString(), "exact");
+  panel.choose("BoundaryBox", "spline");
   panel.settings()->SetFlag("controlpoints", "30");
   panel.set("softBox", 1.0);
   CHECK_STD_STRING(panel.flag("boundary"), "spline"); // other choices keep the boundary
