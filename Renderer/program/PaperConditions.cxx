@@ -8,7 +8,7 @@ namespace fenestra {
 namespace {
 
 /// What an option needs to have an effect.
-enum class Needs { nothing, labels, focus, surface, exact, spline };
+enum class Needs { nothing, labels, focus, surface, spline };
 
 struct Condition {
   const char* name;
@@ -18,7 +18,7 @@ struct Condition {
 
 constexpr Condition conditions[] = {
     {"clip-boundary", "spline", Needs::surface},
-    {"clip-outline", "traced", Needs::exact},
+
     {"control-points", "50", Needs::spline},
     {"spline-smoothing", "0.5", Needs::spline},
     {"clip-softness", "0", Needs::focus},
@@ -45,8 +45,7 @@ bool meets(const OptionValues& values, Needs needs) {
     return values.has("focus");
   if (!hasWord(values, "clip", {"auto", "surface", "ghost"}))
     return false;
-  const bool isSpline = hasWord(values, "clip-boundary", {"spline"});
-  return needs == Needs::surface || isSpline == (needs == Needs::spline);
+  return needs == Needs::surface || hasWord(values, "clip-boundary", {"spline"});
 }
 
 } // namespace

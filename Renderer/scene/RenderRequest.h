@@ -41,7 +41,7 @@ struct ClipRequest {
   /// hole and cutaway, else 0.
   std::optional<double> softness = {};
   /// A plane uses only the offset. `mode` and `softness` replace the corresponding members.
-  SurfaceOptions surface = {.boundary = Boundary::exact, .outline = Outline::smooth};
+  SurfaceOptions surface = {.boundary = Boundary::exact};
 
   ClipMode resolveMode(bool hasFocus) const {
     return mode.value_or(hasFocus ? ClipMode::surface : ClipMode::none);
