@@ -234,9 +234,9 @@ std::int64_t countVanished(const Mask& labels, const Mask& smooth) {
 TEST(AutomaticSmoothing, VesselsOneVoxelWideRemain) {
   for (const auto& [voxel, native] : {std::pair(1.0, 1.0), std::pair(0.9355, 1.5)}) {
     const Vec3 along = Vec3(0.3, 0.2, 1.0).normalized();
-    const Segmentation labels = makePart(voxel, native, [&](const Vec3& p) {
+    const Segmentation labels = makePart(voxel, native, [&, edge = native](const Vec3& p) {
       const Vec3 away = p - Vec3(-12.0, 0.0, 0.0);
-      return (away - away.dot(along) * along).norm() < 0.65 * native ||
+      return (away - away.dot(along) * along).norm() < 0.65 * edge ||
              (p - Vec3(13.0, 0.0, 0.0)).norm() < 12.0;
     });
     const Mask smooth = smoothLabels(labels);
@@ -251,9 +251,9 @@ TEST(AutomaticSmoothing, VesselsKeepTheirWidth) {
       const auto findCenter = [&](double z) {
         return Vec3(-12.0, 0.0, 0.0) + z / along.z() * along;
       };
-      const Segmentation labels = makePart(voxel, native, [&](const Vec3& p) {
+      const Segmentation labels = makePart(voxel, native, [&, edge = native](const Vec3& p) {
         const Vec3 away = p - findCenter(0.0);
-        return (away - away.dot(along) * along).norm() < 0.5 * width * native ||
+        return (away - away.dot(along) * along).norm() < 0.5 * width * edge ||
                (p - organ).norm() < 12.0;
       });
       const Mask plain = labels.makeMask(labels.segments(), labels.grid(), {});
