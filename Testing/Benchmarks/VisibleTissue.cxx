@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace fenestra::benchmarks {
 namespace {
@@ -143,8 +144,7 @@ struct TissueRange {
   std::size_t count;
 };
 
-template <typename Value>
-TissueRange findRange(const Mask& focus, const Value& value) {
+TissueRange findRange(const Mask& focus, const std::function<double(const Vec3&)>& value) {
   const std::vector<Vec3> shells = makeShells(8.0);
   const Size3& size = focus.grid.size;
   std::vector<std::vector<double>> slices(static_cast<std::size_t>(size.z()));
