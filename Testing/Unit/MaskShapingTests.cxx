@@ -183,7 +183,9 @@ TEST(MaskShaping, AutomaticSmoothingPreservesThinParts) {
     EXPECT_LT(valueAt(plain, Vec3(-15.0, 0.0, z)), plain.threshold());
     EXPECT_GE(valueAt(smooth, Vec3(-15.0, 0.0, z)), smooth.threshold());
   }
-  EXPECT_NEAR(valueAt(smooth, Vec3(11.0, 0.0, 0.0)), valueAt(plain, Vec3(11.0, 0.0, 0.0)), 12);
+  // On the ball's surface; equal volume multiplies the odds there by about 1.4.
+  EXPECT_GT(valueAt(smooth, Vec3(11.0, 0.0, 0.0)), valueAt(plain, Vec3(11.0, 0.0, 0.0)));
+  EXPECT_NEAR(valueAt(smooth, Vec3(11.0, 0.0, 0.0)), valueAt(plain, Vec3(11.0, 0.0, 0.0)), 25);
   const Mask flakes = makeMask(makeCenteredGrid({9, 9, 9}, {1.0, 1.0, 0.01}),
                                [](const Vec3& p) { return std::abs(p.x()) < 2.5; });
   EXPECT_EQ(smoothMaskAuto(flakes, 1.0, volume).maxValue, 1) << "unchanged";
