@@ -3,6 +3,7 @@
 
 #include "AppearanceMeasures.h"
 #include "Program.h"
+#include "Scenes.h"
 #include "VisibleTissue.h"
 
 #include "denoise/features/Denoising.h"
@@ -81,18 +82,6 @@ private:
   std::string m_scene;
   std::vector<std::string> m_bounds;
 };
-
-RenderOptions parseArguments(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {"fenestra"};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words)
-    argv.push_back(word.data());
-  const auto values = parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
-  if (!values)
-    throw usageError("ARGUMENT: --help renders nothing");
-  return makeRenderOptions(*values);
-}
 
 /// The image that `fenestra` writes to a .png.
 struct Rendered {
@@ -218,7 +207,7 @@ int benchmark(int argc, char** argv) {
   if (values->has("header"))
     std::cout << "scene,measure,part,value,least,greatest,result" << std::endl;
   measureImage(Table(values->text("name").value_or("scene"), values->list("bounds")),
-               parseArguments(values->texts("ARGUMENT")), values->text("image"));
+               parseRenderOptions(values->texts("ARGUMENT")), values->text("image"));
   return 0;
 }
 

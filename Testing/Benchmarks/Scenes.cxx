@@ -126,7 +126,7 @@ Folders findFolders(const std::optional<std::string>& phantoms) {
           phantoms.value_or(FENESTRA_BENCHMARK_FOLDER)};
 }
 
-RenderOptions SceneCase::options() const {
+RenderOptions parseRenderOptions(const std::vector<std::string>& arguments) {
   Arguments words = {"fenestra"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -134,7 +134,7 @@ RenderOptions SceneCase::options() const {
     argv.push_back(word.data());
   const auto values = parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
   if (!values)
-    throw usageError("--scenes: " + name + " only prints help; fix its line in scenes.txt");
+    throw usageError("--help: renders nothing; omit it");
   return makeRenderOptions(*values);
 }
 

@@ -10,6 +10,9 @@
 
 namespace fenestra::benchmarks {
 
+/// Options of a command line of `fenestra`. Throws Error (usage), also if it renders nothing.
+RenderOptions parseRenderOptions(const std::vector<std::string>& arguments);
+
 /// Folders that replace {reference}, {data} and {phantoms} in the table.
 struct Folders {
   std::filesystem::path reference, data, phantoms;
@@ -33,7 +36,7 @@ struct SceneCase {
   std::vector<std::string> arguments; ///< arguments of `fenestra`
   std::string missing;                ///< a required file that does not exist, or empty
 
-  RenderOptions options() const; ///< Throws Error (usage).
+  RenderOptions options() const { return parseRenderOptions(arguments); }
 };
 
 /// Throws Error (input) for an invalid table.
