@@ -103,12 +103,6 @@ struct RenderOptionTable {
        ValueSpec::choice(surface.boundary,
                          {{"spline", Boundary::spline}, {"exact", Boundary::exact}}),
        OverrideGroup::boundary, Requires::surface},
-      {"clip-outline", "KIND", clipGroup,
-       "How an exact clipping surface continues beyond the outline of the focus: traced (at the "
-       "depth of each point of the outline) or smooth (at the mean depth along the outline)",
-       ValueSpec::choice(surface.outline,
-                         {{"traced", Outline::traced}, {"smooth", Outline::smooth}}),
-       OverrideGroup::boundary, Requires::exact},
       {"control-points", "N", clipGroup,
        "Control points of the clipping spline, on the outline of the focus, 3 to 1000",
        ValueSpec::integer(3, 1000).bind(surface.controlPoints), OverrideGroup::boundary,

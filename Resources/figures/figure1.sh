@@ -89,8 +89,7 @@ cat >>"$page" <<END
   and lights it well**: confirmed by the table.
 - **"C0, C1, C2 continuity"**: the spline is not C2 at a control point, where r² ln r² has a logarithmic second derivative.
   Across the outline of the focus the surface is not even C0: between control points it misses the depth of the focus by
-  the gap above, and its slope does not match. \`--clip-boundary exact --clip-outline traced\` matches both, up to a
-  limit of slope.
+  the gap above, and its slope does not match. \`--clip-boundary exact\` starts at the depths of the outline itself.
 - **N = 50 control points**: enough for a smooth, single outline. A gap between them remains, since p = 0.5 also smooths; see
   the table below.
 - **p = 0.5** means nothing without a unit of length, which the paper does not state. Ours is mm, so the same shape at 1 mm

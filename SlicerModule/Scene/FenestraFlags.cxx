@@ -93,7 +93,6 @@ const std::vector<Flag>& flags() {
                                         {"labelsmoothing", Kind::numberOrAuto},
                                         {"clip", Kind::word},
                                         {"boundary", Kind::word},
-                                        {"clipoutline", Kind::word},
                                         {"controlpoints", Kind::integer},
                                         {"smoothing", Kind::number},
                                         {"plane", Kind::numbers},

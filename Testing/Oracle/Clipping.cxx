@@ -295,11 +295,9 @@ double Clipping::silhouetteSurface(const DepthClip::SilhouetteCell& cell, const 
   };
   const DepthHit hit =
       searchRay(*m_focus, m_medium, ray, {std::max(0.0, lengthTo(cell.min)), infinity});
-  const double fraction = std::clamp((hit.height - 0.25) / 0.25, 0.0, 1.0);
-  if (fraction == 0.0)
+  if (hit.height < 0.5)
     return linearDepth;
-  const double depth = m_view.depth(ray.at(hit.t)) + clip.offset;
-  return linearDepth + fraction * (std::min(depth, cell.max) - linearDepth);
+  return std::min(m_view.depth(ray.at(hit.t)) + clip.offset, cell.max);
 }
 
 double Clipping::clipWeight(const Vec3& world) const {

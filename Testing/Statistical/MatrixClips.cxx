@@ -101,9 +101,13 @@ void placeClip(const Combination& c, Generator& generator, MatrixScene& scene) {
       camera, Domain(fenestra.volume.grid, fenestra.crop), makeFocus(), options);
   fenestra.clip = surface.clip;
   scene.clip = describeDepth(c, surface, options);
-  const DepthBuffer& buffer = *std::get<ClipDepth>(surface.clip).buffer;
-  for (std::int64_t i = 0; i < buffer.size(); ++i)
-    scene.fenestraDepths.push_back(buffer.at(i));
+  const auto& depths = std::get<ClipDepth>(surface.clip);
+  const DepthBuffer& buffer = *depths.buffer;
+  for (std::int64_t row = 0; row < buffer.rows(); ++row)
+    for (std::int64_t column = 0; column < buffer.columns(); ++column)
+      scene.fenestraDepths.push_back(depths.silhouette
+                                         ? depths.surfaceDepth(buffer.position(column, row))
+                                         : buffer.at(buffer.sample(column, row)));
 }
 
 void styleContext(StyleFactor factor, MatrixScene& scene) {

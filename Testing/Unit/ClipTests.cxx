@@ -222,7 +222,17 @@ TEST(ClippingSurface, FlatFocusContinuesAsItsPlane) {
 }
 
 TEST(ClippingSurface, ExactBoundaryGapIsSmallerThanTheSplines) {
-  const Shell shell;
+  Shell shell; // smoothed, as masks are by default: without stairs along the outline
+  shell.focus.maxValue = 255;
+  for (std::int64_t i = 0; i < shell.volume.size.prod(); ++i) {
+    const Vec3 p = shell.volume.indexToWorld * Vec3(static_cast<double>(i % 60),
+                                                    static_cast<double>(i / 60 % 50),
+                                                    static_cast<double>(i / 3000));
+    const double depth = std::min(2.0 - std::abs(p.norm() - 18.0), // mm inside the shell
+                                  (8.0 - p.x() - 2.0 * p.y()) / std::sqrt(5.0));
+    shell.focus.voxels[static_cast<std::size_t>(i)] =
+        static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(0.5 + 0.25 * depth, 0.0, 1.0)));
+  }
   for (const auto projection : projections) {
     const Camera camera = makeObliqueCamera(projection, 120.0, 160);
     const auto measureGap = [&](Boundary boundary) {

@@ -62,6 +62,71 @@ std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& 
   return bounds;
 }
 
+/// True if one of the eight samples around a sample is focus.
+bool isBesideFocus(const FocusDepth& focus, std::int64_t column, std::int64_t row) {
+  for (const std::int64_t r : {row - 1, row, row + 1})
+    for (const std::int64_t c : {column - 1, column, column + 1})
+      if (focus.isFocus(c, r))
+        return true;
+  return false;
+}
+
+struct WeightedDepth {
+  double depth, weight;
+};
+
+/// Finds the halo samples around a sample.
+class HaloSearch {
+public:
+  HaloSearch(const DepthBuffer& buffer, const std::vector<SilhouetteCells::HaloSample>& halo)
+      : m_buffer(buffer), m_halo(halo), m_indices(static_cast<std::size_t>(buffer.size()), -1) {
+    for (std::size_t i = 0; i < halo.size(); ++i)
+      m_indices[static_cast<std::size_t>(halo[i].sample)] = static_cast<std::int32_t>(i);
+  }
+
+  /// Depths of the halo within 2.5 `sigma` samples, with Gaussian weights.
+  std::vector<WeightedDepth> collect(std::int64_t sample, double sigma) const {
+    const std::int64_t column = sample % m_buffer.columns(), row = sample / m_buffer.columns();
+    const auto radius = static_cast<std::int64_t>(std::ceil(2.5 * sigma));
+    std::vector<WeightedDepth> found;
+    for (std::int64_t r = std::max<std::int64_t>(row - radius, 0);
+         r <= std::min(row + radius, m_buffer.rows() - 1); ++r)
+      for (std::int64_t c = std::max<std::int64_t>(column - radius, 0);
+           c <= std::min(column + radius, m_buffer.columns() - 1); ++c) {
+        const std::int32_t index = m_indices[static_cast<std::size_t>(m_buffer.sample(c, r))];
+        if (index < 0)
+          continue;
+        const auto x = static_cast<double>(c - column), y = static_cast<double>(r - row);
+        found.push_back({m_halo[static_cast<std::size_t>(index)].depth,
+                         std::exp(-0.5 * (x * x + y * y) / (sigma * sigma))});
+      }
+    return found;
+  }
+
+private:
+  const DepthBuffer& m_buffer;
+  const std::vector<SilhouetteCells::HaloSample>& m_halo;
+  std::vector<std::int32_t> m_indices; ///< per sample of the buffer; -1: not in the halo
+};
+
+/// Weighted mean of the depths that differ from their weighted median by at most `limit`, mm.
+double averageNearMedian(std::vector<WeightedDepth> depths, double limit) {
+  std::ranges::sort(depths, {}, &WeightedDepth::depth);
+  double half = 0.0;
+  for (const WeightedDepth& at : depths)
+    half += 0.5 * at.weight;
+  auto middle = depths.begin();
+  while (middle + 1 != depths.end() && (half -= middle->weight) > 0.0)
+    ++middle;
+  double sum = 0.0, weights = 0.0;
+  for (const auto& [depth, weight] : depths)
+    if (std::abs(depth - middle->depth) <= limit) {
+      sum += weight * (depth - middle->depth);
+      weights += weight;
+    }
+  return middle->depth + sum / weights;
+}
+
 /// Queries that are traced together.
 struct QueryBatch {
   std::size_t size = 0;
@@ -124,7 +189,8 @@ void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) 
     for (std::int64_t column = range.left; column <= std::min(range.right, buffer.columns() - 1);
          ++column) {
       const std::int64_t sample = buffer.sample(column, row);
-      if (focus.regions[static_cast<std::size_t>(sample)] != Region::context)
+      if (focus.regions[static_cast<std::size_t>(sample)] != Region::context ||
+          !isBesideFocus(focus, column, row))
         continue;
       const Interval depths = joinDepthBounds(buffer, column, row);
       if (depths.isEmpty())
@@ -143,41 +209,26 @@ void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) 
     if (hits[i].indicator > FocusCells::captureThreshold)
       m_halo[found++] = {m_halo[i].sample, hits[i].depth};
   m_halo.resize(found);
+  smoothHalo(buffer);
 }
 
-void SilhouetteCells::smoothHalo(const DepthBuffer& buffer, double voxelEdge) {
-  const double sigma = std::clamp(voxelEdge / std::abs(buffer.xAxis().pitch), 2.0, 8.0); // samples
-  const double jump = std::max(2.0, 2.0 * voxelEdge);
-  const auto reach = static_cast<std::int64_t>(std::ceil(2.5 * sigma));
-  std::vector<std::int32_t> indices(m_indices.size(), -1);
-  for (std::size_t i = 0; i < m_halo.size(); ++i)
-    indices[static_cast<std::size_t>(m_halo[i].sample)] = static_cast<std::int32_t>(i);
-  const auto average = [&](const HaloSample& own) {
-    const std::int64_t column = own.sample % buffer.columns(), row = own.sample / buffer.columns();
-    double sum = 0.0, weights = 0.0;
-    for (std::int64_t r = std::max<std::int64_t>(row - reach, 0);
-         r <= std::min(row + reach, buffer.rows() - 1); ++r)
-      for (std::int64_t c = std::max<std::int64_t>(column - reach, 0);
-           c <= std::min(column + reach, buffer.columns() - 1); ++c) {
-        const std::int32_t index = indices[static_cast<std::size_t>(buffer.sample(c, r))];
-        if (index < 0)
-          continue;
-        const double difference = m_halo[static_cast<std::size_t>(index)].depth - own.depth;
-        if (std::abs(difference) > jump)
-          continue;
-        const auto x = static_cast<double>(c - column), y = static_cast<double>(r - row);
-        const double weight = std::exp(-0.5 * (x * x + y * y) / (sigma * sigma));
-        sum += weight * difference;
-        weights += weight;
-      }
-    return own.depth + sum / weights;
-  };
+/// Replaces the halo's depths by their mean along the outline, with Gaussian weights of standard
+/// deviation 1.5 times the longest edge of the focus's voxels, from 2 to 16 samples. Depths that
+/// differ from the weighted median by more than four edges do not count: they belong to other parts
+/// of the focus.
+void SilhouetteCells::smoothHalo(const DepthBuffer& buffer) {
+  const auto toWorld = m_tracer->cells().cellToWorld().linear();
+  double voxelEdge = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+    voxelEdge = std::max(voxelEdge, (toWorld * Vec3(Vec3::Unit(axis))).norm());
+  const double sigma = std::clamp(1.5 * voxelEdge / std::abs(buffer.xAxis().pitch), 2.0, 16.0);
+  const HaloSearch search(buffer, m_halo);
   std::vector<double> depths(m_halo.size());
-  tbb::parallel_for(std::size_t{0}, m_halo.size(),
-                    [&](std::size_t i) { depths[i] = average(m_halo[i]); });
+  tbb::parallel_for(std::size_t{0}, m_halo.size(), [&](std::size_t i) {
+    depths[i] = averageNearMedian(search.collect(m_halo[i].sample, sigma), 4.0 * voxelEdge);
+  });
   for (std::size_t i = 0; i < m_halo.size(); ++i)
     m_halo[i].depth = depths[i];
-  m_isSmooth = true;
 }
 
 void SilhouetteCells::move(double offset) {
@@ -212,17 +263,11 @@ void SilhouetteCells::evaluate(std::span<Query> queries) const {
       inner.queries[i]->depth = inner.results[i].depth - toFocus;
     else
       addToRest(*inner.queries[i]);
-  if (m_isSmooth)
-    m_tracer->findHits(rest.depthQueries(), rest.hits());
-  else
-    m_tracer->findHitsAndMaxima(rest.depthQueries(), rest.hits());
+  m_tracer->findHits(rest.depthQueries(), rest.hits());
   for (std::size_t i = 0; i < rest.size; ++i)
-    if (const DepthHit& hit = rest.results[i]; hit.indicator > FocusCells::captureThreshold) {
+    if (const DepthHit& hit = rest.results[i]; hit.indicator > 0.0) {
       Query& query = *rest.queries[i];
-      const double depth = std::min(hit.depth, findBounds(query).end) - toFocus;
-      const double blend = // 0 at captureThreshold, 1 at the focus's surface (indicator 1/2)
-          (hit.indicator - FocusCells::captureThreshold) / (0.5 - FocusCells::captureThreshold);
-      query.depth += blend * (depth - query.depth);
+      query.depth = std::min(hit.depth, findBounds(query).end) - toFocus;
     }
 }
 

@@ -5,23 +5,21 @@
 // silhouette cell, each look-up of the surface therefore queries the focus itself, along the camera
 // ray through the point:
 // - If the ray hits the focus, the surface is there.
-// - If the ray barely misses, the surface is at the ray maximum (FocusCells). On the outline this
-//   is the edge of the focus, so that the surface has no step. As the maximum falls from 1/2 to
-//   captureThreshold, within about half a voxel, the surface blends linearly into the interpolated
-//   depth of the buffer.
-// Halo samples lie beside the focus and have a ray maximum, whose depth they take. The fill starts
-// at the halo, so that the surface leaves the focus at its outline, not at the last focus sample.
+// - If it misses, the surface is the interpolated depth of the buffer. There, the focus samples at
+//   the outline have the depth of the surface beside them (ClippingSurface.cxx), so that it does
+//   not rise toward the focus.
+// Halo samples lie beside the focus and have a ray maximum (FocusCells). At the outline this is the
+// edge of the focus. The fill starts at the halo, so that the surface leaves the focus at its
+// outline, not at the last focus sample. Ray maxima lie near planes of voxels, and jump from one to
+// another along the outline; the surface would have notches and pleats. The depth of a halo sample
+// is therefore their mean along the outline. The surface may then have a step at the outline, where
+// the focus is nearly parallel to the ray.
 //
 //   row of samples, camera above               indicator along a ray that barely misses
 //    context   halo    focus                     1/2 - - - - - - - - - - -
 //       o───────o───────●───────●                        .-^-.    ray maximum
 //         silhouette    |                        1/4 - -/- - -\- - -   captureThreshold
 //      filled surface   | exact                     ___/       \____
-//
-// In views along an axis of the focus's grid, ray maxima lie on planes of voxels. Their depths then
-// jump by a voxel along the outline, and the surface has notches and pleats. After smoothHalo(),
-// the halo has their mean along the outline, and rays that miss follow the buffer. The surface may
-// then have a step at the outline, where the focus is nearly parallel to the ray.
 //
 // The depth bounds of a cell contain all depths at which its rays can hit the focus; points outside
 // them need no query. In an inner cell, where all samples are focus, they are the depth range of
@@ -41,15 +39,9 @@ public:
   /// Sample beside the focus whose ray has a maximum.
   struct HaloSample {
     std::int64_t sample;
-    double depth; ///< of the ray maximum, mm
+    double depth; ///< mm; mean of the ray maxima around it
   };
   const std::vector<HaloSample>& halo() const { return m_halo; }
-
-  /// Replaces the halo's depths by their mean along the outline, with Gaussian weights of standard
-  /// deviation max(2 samples, `voxelEdge`), at most 8 samples, from depths within max(2 mm, 2
-  /// `voxelEdge`) of the sample's own. Never changes the surface where a ray hits the focus.
-  /// `buffer`: that of the focus; `voxelEdge`: longest of the focus's grid, mm.
-  void smoothHalo(const DepthBuffer& buffer, double voxelEdge);
 
   /// Moves the surface `offset` mm away from the camera.
   void move(double offset);
@@ -66,7 +58,7 @@ public:
       return {std::min(a.min, b.min), std::max(a.max, b.max)};
     }
   };
-  /// Per silhouette cell: bounds of the depths of hits and ray maxima.
+  /// Per silhouette cell: bounds of the depths of hits.
   const std::vector<DepthBounds>& depthBounds() const { return m_depthBounds; }
   /// Depth bounds of the cell whose top-left sample is `sample`; null if it is no silhouette cell.
   const DepthBounds* findDepthBounds(std::int64_t sample) const {
@@ -91,6 +83,7 @@ public:
 private:
   Interval joinDepthBounds(const DepthBuffer& buffer, std::int64_t column, std::int64_t row) const;
   void findHalo(const FocusDepth& focus, const CellRange& range);
+  void smoothHalo(const DepthBuffer& buffer);
 
   std::shared_ptr<const FocusTracer> m_tracer;
   double m_reference; ///< depth of the camera's target, mm
@@ -99,7 +92,6 @@ private:
   std::vector<DepthBounds> m_depthBounds;
   std::vector<bool> m_isInner; ///< per silhouette cell
   std::vector<HaloSample> m_halo;
-  bool m_isSmooth = false; ///< rays that miss follow the buffer
 };
 
 } // namespace fenestra

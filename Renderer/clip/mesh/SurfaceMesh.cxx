@@ -22,7 +22,7 @@ constexpr double noDepth = std::numeric_limits<double>::quiet_NaN();
 class MeshSamples {
 public:
   MeshSamples(const ClipDepth& clip, const Domain& volume)
-      : m_camera(clip.camera), m_buffer(*clip.buffer) {
+      : m_camera(clip.camera), m_clip(clip), m_buffer(*clip.buffer) {
     const DomainFootprint footprint(m_camera, volume);
     for (std::int64_t row = 0; row < m_buffer.rows(); ++row)
       m_footprint.push_back(footprint.columns(m_buffer, row));
@@ -99,10 +99,14 @@ private:
         nearby = {std::min(nearby.first, covered.first), std::max(nearby.end, covered.end)};
     }
     const bool isCorner = column + 1 >= nearby.first && column <= nearby.end;
-    return isCorner && hasDepth(column, row) ? m_buffer.at(m_buffer.sample(column, row)) : noDepth;
+    if (!isCorner || !hasDepth(column, row))
+      return noDepth;
+    return m_clip.silhouette ? m_clip.surfaceDepth(m_buffer.position(column, row))
+                             : m_buffer.at(m_buffer.sample(column, row));
   }
 
   const Camera& m_camera;
+  const ClipDepth& m_clip;
   const DepthBuffer& m_buffer;
   std::vector<DomainFootprint::Columns> m_footprint; ///< per row of the buffer
   std::int64_t m_firstColumn = 0, m_firstRow = 0, m_columns = 0, m_rows = 0;

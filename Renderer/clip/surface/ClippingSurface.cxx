@@ -155,6 +155,31 @@ void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
       buffer.set(sample, -infinity);
 }
 
+/// Gives the focus samples at the outline the mean depth of the samples beside them that are not
+/// focus. Where rays hit the focus, silhouette cells have its exact depth; where they miss, the
+/// interpolated depth is then that of the surface beside the focus.
+void continueBelowFocus(DepthBuffer& buffer, const FocusDepth& focus) {
+  std::vector<std::pair<std::int64_t, double>> depths;
+  for (std::int64_t row = 0; row < buffer.rows(); ++row)
+    for (std::int64_t column = 0; column < buffer.columns(); ++column) {
+      if (!focus.isFocus(column, row))
+        continue;
+      double sum = 0.0, count = 0.0;
+      for (std::int64_t r = std::max<std::int64_t>(row - 1, 0);
+           r <= std::min(row + 1, buffer.rows() - 1); ++r)
+        for (std::int64_t c = std::max<std::int64_t>(column - 1, 0);
+             c <= std::min(column + 1, buffer.columns() - 1); ++c)
+          if (!focus.isFocus(c, r)) {
+            sum += buffer.at(buffer.sample(c, r));
+            count += 1.0;
+          }
+      if (count > 0.0)
+        depths.emplace_back(buffer.sample(column, row), sum / count);
+    }
+  for (const auto& [sample, depth] : depths)
+    buffer.set(sample, depth);
+}
+
 /// Fills the surface with an exact boundary, starting at the halo.
 void fillFromHalo(DepthBuffer& buffer, const FocusDepth& focus, const SilhouetteCells& silhouette,
                   double length) {
@@ -164,6 +189,7 @@ void fillFromHalo(DepthBuffer& buffer, const FocusDepth& focus, const Silhouette
     known[static_cast<std::size_t>(sample)] = Region::focus;
   }
   fillSmoothly(buffer, known, length);
+  continueBelowFocus(buffer, focus);
 }
 
 /// Fits the spline to the focus's outline; sets control points, mismatch and warnings of `surface`.
@@ -209,8 +235,6 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
     fillHole(*buffer, surface.focus, camera, options.hole);
   } else if (options.boundary == Boundary::exact) {
     silhouette = std::make_shared<SilhouetteCells>(tracer, surface.focus);
-    if (options.outline == Outline::smooth)
-      silhouette->smoothHalo(surface.focus.depth, focus.grid.spacing().maxCoeff());
     fillFromHalo(*buffer, surface.focus, *silhouette, computeLevelingLength(volume));
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);

@@ -26,18 +26,11 @@ enum class Boundary {
   exact,  ///< from all boundary points of the focus, with the slope of the focus (SmoothFill.h)
 };
 
-/// How an exact boundary continues beyond the outline of the focus.
-enum class Outline {
-  traced, ///< at the ray maxima (SilhouetteCells.h)
-  smooth, ///< at the ray maxima, smoothed along the outline
-};
-
 struct SurfaceOptions {
   SurfaceMode mode = SurfaceMode::surface;
   int controlPoints = 50; ///< on the contours of the focus, 1 to 1000
   double smoothing = 0.5; ///< p of the thin plate spline, 0 to 1
   Boundary boundary = Boundary::spline;
-  Outline outline = Outline::traced;
   HoleOptions hole = {};
   double offset = 0.0; ///< mm, moves the surface away from the camera; negative: toward it
   ClipEdge edge = {};
