@@ -20,8 +20,6 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-constexpr const char* smoothingKey = "volume-smoothing";
-
 /// Values of the given options that `isIncluded`, by name; file names relative to `folder`.
 template <typename Predicate>
 ordered_json collectOptions(const OptionValues& options, const fs::path& folder,
@@ -66,6 +64,22 @@ std::string findMissingFile(const json& some, const json& others) {
   return "";
 }
 
+/// Automatic smoothing is that of the stored samples, whatever the outputs would choose.
+void adoptSmoothing(const CheckpointFile& film, RenderOptions& options) {
+  if (options.smoothing.kind != SmoothingRequest::Kind::automatic)
+    return;
+  const JsonNode settings = JsonNode(film.metadata(), film.path().string()).at("settings");
+  const std::vector<JsonNode> values = settings.at(smoothingOption).elements();
+  const SmoothingRequest stored =
+      values.empty() ? SmoothingRequest() : parseSmoothing(values.front().text());
+  RenderRequest& scene = options.scene;
+  if (std::exchange(scene.smoothing, stored).kind != stored.kind)
+    scene.omissions.push_back(makeMessage(
+        ErrorCode::ignoredRequest, concat("--", smoothingOption), film.path(),
+        " was rendered from the ", stored.kind == SmoothingRequest::Kind::off ? "raw" : "smoothed",
+        " volume, and so is this image; for the other, render it again with another --checkpoint"));
+}
+
 } // namespace
 
 bool isSampleOption(const Option& option) {
@@ -76,28 +90,11 @@ bool isSampleOption(const Option& option) {
 
 ordered_json makeProvenance(const OptionValues& given, const RenderJob& job,
                             const fs::path& folder) {
-  constexpr int exact = 17; // significant digits
   ordered_json settings = collectOptions(job.values, folder, isSampleOption);
-  settings.erase(smoothingKey); // resolved; nothing for the raw volume
-  if (const SmoothingRequest& smoothing = job.options.scene.smoothing;
-      smoothing.kind != SmoothingRequest::Kind::off)
-    settings[smoothingKey] = {smoothing.kind == SmoothingRequest::Kind::automatic
-                                  ? "auto"
-                                  : toString(smoothing.noise, exact)};
+  settings[smoothingOption] = {formatSmoothing(job.options.scene.smoothing)};
   return {{"version", concat(samplingVersionText, " on ", processorText)},
           {"given", collectOptions(given, folder, isImageOption)},
           {"settings", std::move(settings)}};
-}
-
-SmoothingRequest readSmoothing(const CheckpointFile& film) {
-  const JsonNode settings = JsonNode(film.metadata(), film.path().string()).at("settings");
-  const auto stored = settings.find(smoothingKey);
-  if (!stored)
-    return {};
-  OptionValues values(renderSyntax.options);
-  for (const JsonNode& value : stored->elements())
-    values.add(smoothingKey, value.text());
-  return readOptions(values).smoothing;
 }
 
 std::vector<fs::path> listInputFiles(const PreparedScene& scene, const RenderOptions& options) {
@@ -158,7 +155,7 @@ std::string formatShard(const Shard& shard) {
   return concat(shard.index + 1, '/', shard.count);
 }
 
-Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given, Warn warn)
+Checkpoint::Checkpoint(RenderJob& job, const OptionValues& given, Warn warn)
     : m_job(job),
       m_path(*job.options.checkpoint),
       m_warn(std::move(warn)),
@@ -171,8 +168,7 @@ Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given, Warn war
   if (fileExists(m_path) &&
       !(fs::is_regular_file(m_path, failed) && fs::is_empty(m_path, failed))) {
     const CheckpointFile& film = m_files.emplace_back(m_path);
-    for (const char* key : {"version", "settings"})
-      requireSame(film, key);
+    requireSettings(film, job);
     if (const Shard& here = job.options.settings.shard; film.shard() != here)
       throw mismatchError(
           concat("--shard was ", formatShard(film.shard()), ", is ", formatShard(here)));
@@ -181,15 +177,21 @@ Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given, Warn war
   m_outputs.add(m_path);
 }
 
-Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given,
+Checkpoint::Checkpoint(RenderJob& job, const OptionValues& given,
                        std::vector<CheckpointFile> shards)
     : m_job(job),
       m_path(shards.front().path()),
       m_files(std::move(shards)),
       m_isMerge(true),
       m_provenance(makeProvenance(given, job, m_path.parent_path())) {
-  for (const char* key : {"version", "settings"})
-    requireSame(m_files.front(), key);
+  requireSettings(m_files.front(), job);
+}
+
+void Checkpoint::requireSettings(const CheckpointFile& film, RenderJob& job) {
+  requireSame(film, "version");
+  adoptSmoothing(film, job.options);
+  m_provenance["settings"][smoothingOption] = {formatSmoothing(job.options.scene.smoothing)};
+  requireSame(film, "settings");
 }
 
 void Checkpoint::requireSame(const CheckpointFile& film, const std::string& key) const {

@@ -19,8 +19,6 @@ bool isSampleOption(const Option& option);
 /// `folder`.
 nlohmann::ordered_json makeProvenance(const OptionValues& given, const RenderJob& job,
                                       const std::filesystem::path& folder);
-/// Smoothing of the volume that a checkpoint file was rendered from. Throws Error (input).
-SmoothingRequest readSmoothing(const CheckpointFile& film);
 /// All files from which the scene was built; an archive instead of its members.
 std::vector<std::filesystem::path> listInputFiles(const PreparedScene& scene,
                                                   const RenderOptions& options);
@@ -41,13 +39,15 @@ class Checkpoint {
 public:
   using Warn = std::function<void(const std::string&)>;
 
-  /// Locks options.checkpoint, which must be set, and reads an existing file. The job must outlive
-  /// this. Throws Error: usage if another process is writing the file or its settings differ; input
-  /// if it is damaged; output if it cannot be written.
-  Checkpoint(const RenderJob& job, const OptionValues& given, Warn warn);
+  /// Locks options.checkpoint, which must be set, and reads an existing file. With automatic
+  /// smoothing, `job` gets the smoothing of that file, whatever its outputs would choose. It must
+  /// outlive this. Throws Error: usage if another process is writing the file or its settings
+  /// differ; input if it is damaged; output if it cannot be written.
+  Checkpoint(RenderJob& job, const OptionValues& given, Warn warn);
 
-  /// For merge: all shards of one image, in order; they are read and never written.
-  Checkpoint(const RenderJob& job, const OptionValues& given, std::vector<CheckpointFile> shards);
+  /// For merge: all shards of one image, in order; they are read and never written. `job` gets
+  /// their smoothing.
+  Checkpoint(RenderJob& job, const OptionValues& given, std::vector<CheckpointFile> shards);
 
   /// State to resume; nullopt: none. Throws Error: usage if the inputs or the instruction set
   /// differ, or the file has more samples than requested; input if it is damaged.
@@ -65,6 +65,8 @@ public:
 
 private:
   Error mismatchError(const std::string& difference) const;
+  /// Automatic smoothing of the job becomes that of `film`; all other settings must be the same.
+  void requireSettings(const CheckpointFile& film, RenderJob& job);
   void requireSame(const CheckpointFile& film, const std::string& key) const;
   void checkSampleCounts(const RenderResult& result, const RenderSettings& settings) const;
 

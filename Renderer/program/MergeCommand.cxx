@@ -102,18 +102,6 @@ OptionValues readRenderOptions(const CheckpointFile& film) {
   return options;
 }
 
-/// The samples are of a raw or a smoothed volume, whatever the outputs of merge would choose.
-void useSmoothing(const SmoothingRequest& stored, RenderOptions& options) {
-  RenderRequest& scene = options.scene;
-  if (std::exchange(scene.smoothing, stored).kind != stored.kind)
-    scene.omissions.push_back(
-        makeMessage(ErrorCode::ignoredRequest, "--volume-smoothing",
-                    "the checkpoint files were rendered from the ",
-                    stored.kind == SmoothingRequest::Kind::off ? "raw" : "smoothed",
-                    " volume, and so is this image; to change that, render them again with ",
-                    "--volume-smoothing off or N"));
-}
-
 } // namespace
 
 /// Built on first use, since renderSyntax is initialized in another source file.
@@ -153,7 +141,6 @@ int mergeCommand(int argc, char** argv, int first) {
         options.add(option.name, value);
     }
   RenderJob job = makeRenderJob(options);
-  useSmoothing(readSmoothing(films.front()), job.options);
   RenderSettings& settings = job.options.settings; // such that no samples are added
   settings.samples = films.front().finishedSamples();
   settings.seconds = infinity;

@@ -374,7 +374,7 @@ int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first
   if (given->has("returnparameterfile"))
     printLinesToOutput();
   configureMachine(*given);
-  const RenderJob job = makeRenderJob(*given);
+  RenderJob job = makeRenderJob(*given);
   if (given->has("echo"))
     std::cout << job.values.echo() << std::flush;
   std::optional<Checkpoint> checkpoint;

@@ -196,7 +196,7 @@ struct RenderOptionTable {
       {"volume-smoothing", "auto|off|N", appearanceGroup,
        "Smooths the volume by non-local means, for all outputs alike: off, N (standard deviation "
        "of the noise, in scalar units, such as HU), or auto: by the estimated noise, if an output "
-       "is .png or .tif",
+       "is .png or .tif; a render that resumes from a checkpoint stays raw or smoothed",
        ValueSpec::text()
            .bind(options.smoothing, readVolumeSmoothing)
            .withDefault("auto")

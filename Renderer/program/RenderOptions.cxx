@@ -190,6 +190,25 @@ void resolveSmoothing(RenderOptions& options, bool isServer) {
       isSmoothed(options.smoothing, purpose) ? options.smoothing : SmoothingRequest();
 }
 
+std::string formatSmoothing(const SmoothingRequest& smoothing) {
+  constexpr int exact = 17; // significant digits
+  switch (smoothing.kind) {
+  case SmoothingRequest::Kind::automatic:
+    return "auto";
+  case SmoothingRequest::Kind::off:
+    return "off";
+  case SmoothingRequest::Kind::given:
+    break;
+  }
+  return toString(smoothing.noise, exact);
+}
+
+SmoothingRequest parseSmoothing(const std::string& text) {
+  OptionValues values(renderSyntax.options);
+  values.add(smoothingOption, text);
+  return readOptions(values).smoothing;
+}
+
 RenderOptions resolveProgress(RenderOptions options) {
   if (options.quiet && options.verbose)
     throw usageError("--quiet and --verbose contradict each other; give only one");

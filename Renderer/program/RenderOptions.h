@@ -83,6 +83,11 @@ RenderOptions resolveProgress(RenderOptions options);
 /// Resolves which volume the scene renders: as read, or smoothed. `isServer`: for fenestra serve.
 void resolveSmoothing(RenderOptions& options, bool isServer = false);
 
+inline constexpr const char* smoothingOption = "volume-smoothing";
+/// A resolved request as a value of this option, exactly, and back. Throws Error (usage).
+std::string formatSmoothing(const SmoothingRequest& smoothing);
+SmoothingRequest parseSmoothing(const std::string& text);
+
 /// Complete options from all values. Throws Error (usage) for values out of range and for
 /// contradictory options.
 RenderOptions makeRenderOptions(const OptionValues& values);

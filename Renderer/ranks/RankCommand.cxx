@@ -59,7 +59,9 @@ void startRanks(const RenderOptions& options, const PreparedScene& scene,
   startWorkers(ranks);
   try {
     broadcastFiles(listInputFiles(scene, options), ranks);
-    std::string text = describeScene(scene, settings);
+    std::string smoothing = formatSmoothing(options.scene.smoothing),
+                text = describeScene(scene, settings);
+    ranks.broadcast(smoothing);
     ranks.broadcast(text);
   } catch (const Error& error) { // without an abort, the other ranks would wait for more bytes
     ranks.abort(composeMessage(error.message()), exitStatus(error.kind()));
@@ -94,11 +96,13 @@ void runOtherRank(int argc, char** argv, Ranks& ranks) {
       parseCommandLine(renderSyntax, argc, argv, findFirstArgument(argc, argv));
   configureMachine(*given);
   std::optional<ReceivedFiles> files(ranks);
-  std::string expected;
+  std::string smoothing, expected;
+  ranks.broadcast(smoothing);
   ranks.broadcast(expected);
   RenderJob job = makeRenderJob(files->localizePaths(*given, renderSyntax.options));
   RenderRequest& request = job.options.scene;
-  request.features = request.measure = false; // rank 0 alone needs them
+  request.features = request.measure = false;    // rank 0 alone needs them
+  request.smoothing = parseSmoothing(smoothing); // may be that of rank 0's checkpoint
   checkMemory(request);
   const PreparedScene scene(request, job.input);
   files.reset();

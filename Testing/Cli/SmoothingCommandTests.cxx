@@ -32,8 +32,9 @@ protected:
     folder.write("clean.nrrd", text.encode(clean));
   }
 
-  Outcome render(const Arguments& arguments, const std::string& volume = "noisy.nrrd") const {
-    Arguments all = {volume, "--size", "16x16", "--samples", "2", "--progress", "none"};
+  Outcome render(const Arguments& arguments, const std::string& volume = "noisy.nrrd",
+                 const std::string& samples = "2") const {
+    Arguments all = {volume, "--size", "16x16", "--samples", samples, "--progress", "none"};
     all.insert(all.end(), arguments.begin(), arguments.end());
     const Outcome outcome = run(all, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -114,16 +115,49 @@ TEST_F(SmoothingCommand, IslandsOfOpacityAreRemovedWithTheNoise) {
   EXPECT_FALSE(count("off").contains("volumeSmoothing"));
 }
 
-TEST_F(SmoothingCommand, CheckpointOfAnotherMediumIsRejected) {
-  const Arguments raw = {"--volume-smoothing", "auto", "--checkpoint", "a.film", "-o", "a.exr"};
-  render(raw);
-  Arguments shown = raw;
-  shown.insert(shown.end(), {"-o", "a.png"});
-  shown.insert(shown.begin(), {"noisy.nrrd", "--size", "16x16", "--samples", "2"});
-  const Outcome outcome = run(shown, folder.path());
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("--volume-smoothing"), std::string::npos) << outcome.err;
-  render(raw); // still resumes
+TEST_F(SmoothingCommand, ResumedRenderShowsTheMediumOfItsCheckpoint) {
+  struct Medium {
+    std::string begun;    ///< output of the first run
+    std::string given;    ///< to it
+    std::string expected; ///< of the image of the second run
+    Arguments outputs;    ///< of the second run
+  };
+  const Medium media[] = {{"raw.exr", "auto", "off", {"-o", "a.exr", "-o", "a.png"}},
+                          {"shown.png", "auto", "auto", {"-o", "a.exr"}},
+                          {"given.exr", "15", "15", {"-o", "a.exr"}}};
+  for (const auto& [begun, given, expected, outputs] : media) {
+    SCOPED_TRACE(begun);
+    render({"--checkpoint", begun + ".film", "--volume-smoothing", given, "-o", begun});
+    Arguments resumed = outputs;
+    resumed.insert(resumed.end(), {"--checkpoint", begun + ".film"});
+    const Outcome outcome = render(resumed, "noisy.nrrd", "3");
+    EXPECT_NE(outcome.err.find("--volume-smoothing"), std::string::npos) << outcome.err;
+    render({"--volume-smoothing", expected, "-o", "once.exr", "-o", "once.png"}, "noisy.nrrd", "3");
+    expectSameImage(folder / "once.exr", folder / "a.exr");
+    EXPECT_EQ(isSmoothed("a.exr"), expected != "off");
+  }
+  for (const char* begun : {"raw.exr", "shown.png"}) { // as the outputs would choose
+    const Outcome outcome =
+        render({"--checkpoint", std::string(begun) + ".film", "-o", begun}, "noisy.nrrd", "3");
+    EXPECT_EQ(outcome.err.find("--volume-smoothing"), std::string::npos) << outcome.err;
+  }
+}
+
+TEST_F(SmoothingCommand, ExplicitSmoothingMustBeThatOfTheCheckpoint) {
+  struct Contradiction {
+    std::string begun, other;
+  };
+  for (const auto& [begun, other] : {Contradiction{"a.exr", "15"}, Contradiction{"a.png", "off"},
+                                     Contradiction{"a.png", "15"}}) {
+    const std::string film = begun + ".film";
+    render({"--checkpoint", film, "-o", begun});
+    const Outcome outcome = run({"noisy.nrrd", "--size", "16x16", "--samples", "2",
+                                 "--volume-smoothing", other, "--checkpoint", film, "-o", begun},
+                                folder.path());
+    EXPECT_EQ(outcome.status, 2) << begun << ' ' << other;
+    EXPECT_NE(outcome.err.find("--volume-smoothing"), std::string::npos) << outcome.err;
+    render({"--checkpoint", film, "-o", begun}); // still resumes
+  }
 }
 
 TEST_F(SmoothingCommand, ShardsAreOfTheRawVolumeAndMergeSaysSo) {
