@@ -209,6 +209,21 @@ TEST_F(SceneChange, WarnsIfTheTransferFunctionHidesTheFocus) {
   expectMessage(warnings[0], "transparent-focus | 100 %");
 }
 
+TEST_F(SceneChange, SmoothedVolumeIsReused) {
+  request.smoothing = {SmoothingRequest::Kind::given, 20.0};
+  const PreparedScene before(request);
+  request.view.name = "left"; // as the frames of a turntable
+  request.focus = {"2"};
+  request.density = 2.0;
+  const PreparedScene changed = before.withRequest(request);
+  EXPECT_FALSE(changed.updatedStages().volume);
+  EXPECT_EQ(&changed.volume(), &before.volume());
+  request.smoothing = {};
+  const PreparedScene raw = changed.withRequest(request);
+  request.smoothing = {SmoothingRequest::Kind::given, 20.0};
+  EXPECT_EQ(&raw.withRequest(request).volume(), &before.volume()) << "kept while off";
+}
+
 TEST_F(SceneChange, ColorChangesReuseTheLabels) {
   request.materials = "library";
   const PreparedScene before(request);
