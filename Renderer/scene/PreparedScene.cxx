@@ -17,9 +17,9 @@ void append(const std::vector<Item>& from, std::vector<Item>& to) {
 std::string describeSmoothing(const Mask& focus, const Vec3& native) {
   const auto width = [&](int axis) { return toString(native[axis], 3); };
   const double percent = std::round(1e3 * focus.volumeChange) / 10.0 + 0.0; // no -0
-  return concat("segments smoothed by ", toString(focus.smoothing, 3), " mm (made on voxels of ",
-                width(0), " x ", width(1), " x ", width(2), " mm); volume of the focus ",
-                percent < 0.0 ? "" : "+", toString(percent, 3), " %");
+  return concat("segments smoothed by ", toString(focus.smoothing, 3),
+                " mm (label map made on voxels of ", width(0), " x ", width(1), " x ", width(2),
+                " mm); volume of the focus ", percent < 0.0 ? "" : "+", toString(percent, 3), " %");
 }
 
 } // namespace
@@ -202,10 +202,8 @@ std::vector<std::string> PreparedScene::choices() const {
                            : m_transfer->isByModality ? " (by modality)"
                                                       : "";
   std::vector<std::string> facts = {concat("transfer function: ", transferName(), from)};
-  if (const auto report = smoothing())
-    facts.push_back(report->isApplied() ? concat("volume: ", describe(*report))
-                                        : concat("volume: not smoothed, its noise is ",
-                                                 toString(report->noise, 2)));
+  const auto report = smoothing();
+  facts.push_back("volume: " + (report ? describe(*report) : "as read, not smoothed"));
   if (r.environment || r.environmentMap)
     facts.emplace_back("lights: environment");
   else
@@ -214,10 +212,11 @@ std::vector<std::string> PreparedScene::choices() const {
     facts.push_back("names of segments: " + m_segments->segmentation.namesSource());
   for (const SegmentMargin& margin : margins())
     facts.push_back(margin.isApplied
-                        ? concat("margin of ", margin.segment, ": ", toString(margin.mean, 2),
+                        ? concat("margin of ", margin.segment, ": mean ", toString(margin.mean, 2),
                                  " mm, p95 ", toString(margin.p95, 2), " mm, removes ",
                                  toString(margin.volume / 1000.0, 3), " ml of other tissue")
-                        : concat("margin of ", margin.segment, ": none, not one tissue"));
+                        : concat("margin of ", margin.segment,
+                                 ": none (too small, voxels too thick, or not of one tissue)"));
   if (m_focus->mask && m_focus->mask->smoothing > 0.0)
     facts.push_back(describeSmoothing(*m_focus->mask, nativeSpacing()));
   if (tint()) {

@@ -58,7 +58,8 @@ double chooseStrength(Modality modality) {
 SmoothedVolume filterVolume(const Volume& volume, const SmoothingRequest& request,
                             Modality modality) {
   const bool isGiven = request.kind == SmoothingRequest::Kind::given;
-  SmoothedVolume result{.report = {.isLogarithmic = modality == Modality::us}};
+  SmoothedVolume result{.report = {.isLogarithmic = modality == Modality::us,
+                                   .isHounsfield = modality == Modality::ct}};
   SmoothingReport& report = result.report;
   report.noise = isGiven ? request.noise : estimateNoise(volume, modality);
   if (isGiven && report.isLogarithmic) // derivative of the logarithm at the mean
@@ -117,7 +118,8 @@ std::optional<SmoothedVolume> readResult(const SharedSlot& slot, std::uint64_t k
                         {.noise = numbers->at(0),
                          .strength = numbers->at(1),
                          .isReused = true,
-                         .isLogarithmic = modality == Modality::us}};
+                         .isLogarithmic = modality == Modality::us,
+                         .isHounsfield = modality == Modality::ct}};
 }
 
 /// True for runs with a voxel in the focus, which must not vanish.
@@ -205,9 +207,15 @@ std::optional<double> findOnset(const TransferFunction& transfer) {
 }
 
 std::string describe(const SmoothingReport& report) {
+  const char* const unit = report.isHounsfield ? " HU" : "";
+  if (!report.isApplied())
+    return report.noise > 0.0
+               ? concat("not smoothed, since its noise is only ", toString(report.noise, 2), unit)
+               : "not smoothed";
   TextWriter line;
   line << "smoothed by non-local means" << (report.isLogarithmic ? " of logarithms" : "")
-       << ": noise " << toString(report.noise, 3) << ", strength " << toString(report.strength, 3);
+       << ": noise " << toString(report.noise, 3) << unit << ", strength "
+       << toString(report.strength, 3) << unit;
   if (report.islands > 0)
     line << ", " << report.islands << " islands of opacity removed ("
          << toString(report.islandVolume, 3) << " mm^3)";

@@ -12,6 +12,7 @@ struct SmoothingReport {
   double strength = 0.0;      ///< of the filter, scalar units; 0: little noise, unchanged volume
   bool isReused = false;      ///< another row of a batch had smoothed the same volume
   bool isLogarithmic = false; ///< both numbers, and the filter, apply to log(1 + scalar - minimum)
+  bool isHounsfield = false;  ///< the scalar units are HU
   std::int64_t islands = 0;   ///< that were removed
   double islandVolume = 0.0;  ///< of all of them, mm^3
 
@@ -53,7 +54,8 @@ SmoothedVolume dropIslands(const VolumeHandle& volume, const Handle<TransferChoi
 /// Greatest scalar up to which the medium is transparent; nullopt: it begins opaque.
 std::optional<double> findOnset(const TransferFunction& transfer);
 
-/// One line for headers and comments of images, such as "smoothed by non-local means, ...".
+/// One line for headers and comments of images, such as "smoothed by non-local means: ..." or "not
+/// smoothed".
 std::string describe(const SmoothingReport& report);
 
 } // namespace fenestra

@@ -115,8 +115,8 @@ TEST_F(MaterialsCommand, NeedNoFocusAndAreAFact) {
   const Outcome outcome = run(
       makeArguments({"--materials", "library", "--output", "a.png", "--verbose"}), folder.path());
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(outcome.err, "transfer function: by the volume's range\nvolume: not smoothed, its "
-                         "noise is 0\nlights: theatre-wet\n"
+  EXPECT_EQ(outcome.err, "transfer function: by the volume's range\nvolume: not smoothed\n"
+                         "lights: theatre-wet\n"
                          "materials: library, 1 color\n");
 }
 
