@@ -1,6 +1,5 @@
 #pragma once
-// Volumes of labels and of their smoothed masks. They are measured by the lengths inside the
-// surface of the lines between neighboring voxel centers, along all axes, in `volume` only.
+// Volumes of labels and of the trilinear surfaces of their smoothed masks, in `volume` only.
 
 #include "model/volume/Mask.h"
 
