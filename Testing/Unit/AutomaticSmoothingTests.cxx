@@ -247,6 +247,22 @@ TEST(AutomaticSmoothing, VesselsOneVoxelWideRemain) {
   }
 }
 
+/// A vessel that leaves the volume remains as far as the mask, whatever is at the opposite face.
+TEST(AutomaticSmoothing, VesselsRemainAtFacesOfTheMask) {
+  for (const int axis : {0, 1}) {
+    const Mask labels = makeMask(makeCube(54.0, Vec3::Ones()), [&](const Vec3& p) {
+      const bool isLine = std::abs(p[1 - axis] - 0.5) < 0.1 && std::abs(p.z() - 0.5) < 0.1;
+      return (isLine && p[axis] < 0.0) || p[axis] > 15.0;
+    });
+    const Mask smooth = smoothMaskAuto(labels, 1.5, labels.grid);
+    for (std::int64_t i = 0; i < 20; ++i) {
+      Vec3 at = Vec3::Constant(0.5);
+      at[axis] = (smooth.grid.indexToWorld * Size3(i, i, i).cast<double>())[axis];
+      EXPECT_GE(evalMask(smooth, at), 0.5) << axis << ' ' << i;
+    }
+  }
+}
+
 TEST(AutomaticSmoothing, VesselsKeepTheirWidth) {
   const Vec3 along = Vec3(0.3, 0.2, 1.0).normalized(), organ(13.0, 0.0, 0.0);
   for (const auto& [voxel, native] : {std::pair(1.0, 1.0), std::pair(0.9355, 1.5)})

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 
 namespace fenestra {
 namespace {
@@ -38,12 +39,13 @@ void sharpen(const Mask& labels, const Size3& first, const std::vector<std::uint
 bool isEmptyAround(const Mask& mask, std::size_t voxel) {
   const auto at = static_cast<std::int64_t>(voxel);
   const Size3& size = mask.grid.size;
-  const Size3 steps(1, size.x(), size.x() * size.y());
-  const auto isEmpty = [&](std::int64_t i) {
-    return i < 0 || i >= size.prod() || mask.voxels[static_cast<std::size_t>(i)] < mask.threshold();
+  const Size3 center(at % size.x(), at / size.x() % size.y(), at / (size.x() * size.y()));
+  const auto isEmpty = [&](const Size3& place) {
+    return (place.array() < 0).any() || (place.array() >= size.array()).any() ||
+           mask.voxels[linearIndex(place, size)] < mask.threshold();
   };
-  return isEmpty(at) && std::ranges::all_of(steps, [&](std::int64_t step) {
-           return isEmpty(at - step) && isEmpty(at + step);
+  return isEmpty(center) && std::ranges::all_of(std::array{0, 1, 2}, [&](int axis) {
+           return isEmpty(center - Size3::Unit(axis)) && isEmpty(center + Size3::Unit(axis));
          });
 }
 
