@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <ranges>
 #include <vector>
 
 namespace fenestra {
@@ -19,5 +20,13 @@ struct Distribution {
             values[static_cast<std::size_t>(0.95 * (count - 1.0))], values.back()};
   }
 };
+
+/// Median, the upper one of an even number. Reorders the values; there must be one.
+template <std::ranges::random_access_range Values>
+auto findMedian(Values&& values) {
+  const auto middle = std::ranges::begin(values) + std::ranges::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
 
 } // namespace fenestra

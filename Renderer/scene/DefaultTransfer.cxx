@@ -1,6 +1,7 @@
 #include "scene/DefaultTransfer.h"
 
 #include "base/Color.h"
+#include "base/Distribution.h"
 #include "model/medium/Reflectance.h"
 #include "scene/Defaults.h"
 #include "scene/NamedPresets.h"
@@ -11,38 +12,6 @@
 
 namespace fenestra {
 namespace {
-
-/// Values of the volume in the voxels of the segments, at most about a million.
-std::vector<double> collectValues(const Volume& volume, const Segmentation& segmentation,
-                                  const std::vector<SegmentInfo>& segments) {
-  const Mask mask = segmentation.makeMask(segments, volume.grid);
-  const Affine toVolume = volume.grid.worldToIndex * mask.grid.indexToWorld;
-  const Box box = volume.grid.indexBox();
-  const Size3& size = mask.grid.size;
-  const auto stride = static_cast<std::size_t>(mask.count) / 1'000'000 + 1;
-  const auto collect = [&](const auto& voxels) {
-    const Field field(volume.grid, voxels);
-    std::vector<double> values;
-    std::size_t inside = 0;
-    for (std::size_t i = 0; i < mask.voxels.size(); ++i) {
-      if (mask.voxels[i] < mask.threshold() || inside++ % stride != 0)
-        continue;
-      const auto at = static_cast<std::int64_t>(i);
-      const Size3 voxel(at % size.x(), at / size.x() % size.y(), at / size.x() / size.y());
-      const Vec3 index = toVolume * voxel.cast<double>();
-      if ((index.array() >= box.lower.array()).all() && (index.array() <= box.upper.array()).all())
-        values.push_back(field.value(index));
-    }
-    return values;
-  };
-  return std::visit(collect, volume.voxels);
-}
-
-double findMedian(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 /// Segments of `patterns` that have voxels.
 std::vector<SegmentInfo> findSegments(const SegmentPatterns& patterns,
@@ -88,13 +57,14 @@ ScanContent describeScan(const Volume& volume, const Segmentation& segmentation,
       findFocusSegments(findOrganPreset("lungs").focus, chosen).size() == chosen.size();
   if (isPlausibleModality(Modality::ct, volume)) {
     for (const SegmentInfo& segment : findSegments(bloodPatterns, segmentation, hasVoxels))
-      if (auto values = collectValues(volume, segmentation, {segment}); !values.empty())
-        content.blood = std::max(content.blood.value_or(-infinity), findMedian(std::move(values)));
+      if (auto values = sampleValues(volume, segmentation.makeMask({segment}, volume.grid));
+          !values.empty())
+        content.blood = std::max(content.blood.value_or(-infinity), findMedian(values));
     return content;
   }
   const auto brain = findSegments(findOrganPreset("brain-surface").focus, segmentation, hasVoxels);
   if (!brain.empty())
-    content.brain = collectValues(volume, segmentation, brain);
+    content.brain = sampleValues(volume, segmentation.makeMask(brain, volume.grid));
   return content;
 }
 

@@ -79,6 +79,29 @@ std::vector<double> sampleValues(const Volume& volume) {
   return std::visit(sample, volume.voxels);
 }
 
+std::vector<double> sampleValues(const Volume& volume, const Mask& mask) {
+  const Affine toVolume = volume.grid.worldToIndex * mask.grid.indexToWorld;
+  const Box box = volume.grid.indexBox();
+  const Size3& size = mask.grid.size;
+  const auto stride = static_cast<std::size_t>(mask.count) / 1'000'000 + 1;
+  const auto sample = [&](const auto& voxels) {
+    const Field field(volume.grid, voxels);
+    std::vector<double> values;
+    std::size_t inside = 0;
+    for (std::size_t i = 0; i < mask.voxels.size(); ++i) {
+      if (mask.voxels[i] < mask.threshold() || inside++ % stride != 0)
+        continue;
+      const auto at = static_cast<std::int64_t>(i);
+      const Size3 voxel(at % size.x(), at / size.x() % size.y(), at / size.x() / size.y());
+      const Vec3 index = toVolume * voxel.cast<double>();
+      if ((index.array() >= box.lower.array()).all() && (index.array() <= box.upper.array()).all())
+        values.push_back(field.value(index));
+    }
+    return values;
+  };
+  return std::visit(sample, volume.voxels);
+}
+
 double otsuThreshold(const Volume& volume, double low, double high) {
   constexpr int bins = 256;
   std::array<double, bins> histogram{};
@@ -139,26 +162,11 @@ std::optional<double> findAirThreshold(const Volume& volume) {
 
 double transparentFraction(const Mask& focus, const Volume& volume,
                            const TransferFunction& transfer) {
-  const Affine toVolume = volume.grid.worldToIndex * focus.grid.indexToWorld;
-  const Box box = volume.grid.indexBox();
-  const Size3& size = focus.grid.size;
-  const auto count = [&](const auto& voxels) {
-    const Field field(volume.grid, voxels);
-    const std::size_t stride = focus.voxels.size() / 1'000'000 + 1;
-    double all = 0.0, transparent = 0.0;
-    for (std::size_t i = 0; i < focus.voxels.size(); i += stride) {
-      if (focus.voxels[i] < focus.threshold())
-        continue;
-      const auto at = static_cast<std::int64_t>(i);
-      const Size3 voxel(at % size.x(), at / size.x() % size.y(), at / size.x() / size.y());
-      const Vec3 index = toVolume * voxel.cast<double>();
-      all += 1.0;
-      const double value = field.value(index.cwiseMax(box.lower).cwiseMin(box.upper));
-      transparent += transfer.extinction(value)[0] == 0.0;
-    }
-    return all > 0.0 ? transparent / all : 0.0;
-  };
-  return std::visit(count, volume.voxels);
+  const std::vector<double> values = sampleValues(volume, focus);
+  const auto transparent = std::ranges::count_if(
+      values, [&](double value) { return transfer.extinction(value)[0] == 0.0; });
+  return values.empty() ? 0.0
+                        : static_cast<double>(transparent) / static_cast<double>(values.size());
 }
 
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,

@@ -19,6 +19,8 @@ bool isPlausibleModality(Modality modality, const Volume& volume);
 
 /// Values of at most about a million voxels, distributed over the volume.
 std::vector<double> sampleValues(const Volume& volume);
+/// Values at at most about a million voxels of a mask, those inside its surface and the volume.
+std::vector<double> sampleValues(const Volume& volume, const Mask& mask);
 
 /// Otsu's threshold (1979) of sampled values, from a 256-bin histogram of [low, high].
 double otsuThreshold(const Volume& volume, double low, double high);
@@ -32,7 +34,7 @@ std::array<double, 2> findRobustRange(const Volume& volume);
 std::optional<double> findAirThreshold(const Volume& volume);
 
 /// Fraction of the focus voxels, 0 to 1, with zero extinction: a high value means an unsuitable
-/// transfer function. Uses at most about a million voxels of the mask.
+/// transfer function.
 double transparentFraction(const Mask& focus, const Volume& volume,
                            const TransferFunction& transfer);
 

@@ -1,5 +1,7 @@
 #include "scene/FocusInterface.h"
 
+#include "base/Distribution.h"
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -26,9 +28,7 @@ public:
   const std::vector<double>& values() const { return m_values; }
   double median() const {
     std::vector<double> values = m_values;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
+    return findMedian(values);
   }
 
 private:

@@ -1,5 +1,7 @@
 #include "denoise/features/Denoising.h"
 
+#include "base/Distribution.h"
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -59,11 +61,10 @@ Plane centerDepth(const FeatureBuffers& features) {
       depths.push_back(features.depth[i] / features.hit[i]);
   if (depths.empty())
     return features.depth;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::ranges::nth_element(depths, middle);
+  const float middle = findMedian(depths);
   Plane plane = features.depth;
   for (std::size_t i = 0; i < plane.size(); ++i)
-    plane[i] -= *middle * features.hit[i];
+    plane[i] -= middle * features.hit[i];
   return plane;
 }
 

@@ -1,5 +1,6 @@
 // Assembles a volume from the slices of a DICOM series.
 
+#include "base/Distribution.h"
 #include "base/Error.h"
 #include "files/medical/DicomReader.h"
 #include "files/medical/DicomSeries.h"
@@ -98,18 +99,12 @@ void checkConsistent(const std::vector<Slice>& slices) {
   }
 }
 
-double computeMedian(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Throws Error (input) if one of the sorted slices is missing or duplicated.
 void checkGaps(const std::vector<Slice>& slices) {
   std::vector<double> gaps;
   for (std::size_t i = 1; i < slices.size(); ++i)
     gaps.push_back(slices[i].depth - slices[i - 1].depth);
-  const double medianGap = computeMedian(gaps);
+  const double medianGap = findMedian(std::vector(gaps));
   constexpr double minGap = 1e-3; // mm
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const std::string nextName = slices[i + 1].path.filename().string();

@@ -1,5 +1,7 @@
 #include "files/medical/HounsfieldOffset.h"
 
+#include "base/Distribution.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -36,9 +38,7 @@ double computeTissueMedian(const LargeArray<Voxel>& voxels) {
   std::ranges::copy_if(voxels, std::back_inserter(tissue), [](Voxel v) { return v > 200; });
   if (tissue.empty())
     return 0.0;
-  const auto middle = tissue.begin() + std::ptrdiff_t(tissue.size() / 2);
-  std::nth_element(tissue.begin(), middle, tissue.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(findMedian(tissue));
 }
 
 /// Subtracts the offset, in a type that holds the result.

@@ -1,5 +1,7 @@
 #include "files/segments/NativeGrid.h"
 
+#include "base/Distribution.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -92,11 +94,8 @@ double estimateNativeEdge(const std::vector<std::int64_t>& changes, std::size_t 
   constexpr double fewestEmpty = 0.25;   // fraction; shapes, such as boxes, have empty planes, too
   const std::vector<std::int64_t> greatest = filterWindows(
       changes, width / 2, [](const auto& window) { return std::ranges::max(window); });
-  const std::vector<std::int64_t> typical = filterWindows(greatest, width - 1, [](auto& window) {
-    const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
-    std::ranges::nth_element(window, middle);
-    return *middle;
-  });
+  const std::vector<std::int64_t> typical =
+      filterWindows(greatest, width - 1, [](auto& window) { return findMedian(window); });
   const auto hasChanges = [](std::int64_t count) { return count > 0; };
   const auto first = std::ranges::find_if(changes, hasChanges) - changes.begin();
   const auto end =

@@ -1,5 +1,7 @@
 #include "model/filtering/NoiseEstimate.h"
 
+#include "base/Distribution.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -108,17 +110,11 @@ double findMode(std::vector<double> deviations) {
   return last / bins * (static_cast<double>(mode) + 0.5);
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 double estimateDeviation(std::vector<double> residuals) {
-  const double center = median(residuals);
+  const double center = findMedian(residuals);
   for (double& residual : residuals)
     residual = std::abs(residual - center);
-  return 1.4826 * median(std::move(residuals));
+  return 1.4826 * findMedian(residuals);
 }
 
 } // namespace

@@ -1,9 +1,12 @@
 #include "model/masks/OrganMargin.h"
 
+#include "base/Distribution.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace fenestra {
 namespace {
@@ -126,15 +129,7 @@ float computeLocalMedian(const std::vector<float>& values, const Size3& voxel, c
     for (std::int64_t y = first.y(); y <= last.y(); ++y)
       for (std::int64_t x = first.x(); x <= last.x(); ++x)
         *end++ = values[linearIndex({x, y, z}, size)];
-  const auto middle = near.begin() + (end - near.begin()) / 2;
-  std::nth_element(near.begin(), middle, end);
-  return *middle;
-}
-
-double computeMedian(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return static_cast<double>(*middle);
+  return findMedian(std::span(near.begin(), end));
 }
 
 /// Values of one tissue: within `difference` of the median.
@@ -142,10 +137,11 @@ struct TissueRange {
   double median = 0.0, deviation = 0.0, difference = 0.0;
 
   /// `values` must not be empty.
-  explicit TissueRange(std::vector<float> values) : median(computeMedian(values)) {
+  explicit TissueRange(std::vector<float> values)
+      : median(static_cast<double>(findMedian(values))) {
     for (float& value : values)
       value = std::abs(value - static_cast<float>(median));
-    deviation = 1.4826 * computeMedian(values);
+    deviation = 1.4826 * static_cast<double>(findMedian(values));
     difference = std::max(leastDifference, deviations * deviation);
   }
 
