@@ -97,8 +97,7 @@ private:
   VolumeHandle currentVolume() const;
   /// Segments with their margins.
   Handle<SegmentsInput> currentSegments() const {
-    return m_trimmed.result() ? Handle<SegmentsInput>(m_trimmed.result(), &m_trimmed->input)
-                              : m_segments.result();
+    return m_trimmed.result() ? m_trimmed->input : m_segments.result();
   }
   const Handle<Tint>& currentTint() const {
     return m_adjustedTint.result() ? m_adjustedTint.result() : m_tint.result();

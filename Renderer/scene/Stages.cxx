@@ -188,7 +188,8 @@ NamedLights makeLights(const std::string& name, const std::optional<Rgb>& enviro
 TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
                              const Handle<std::vector<bool>>& hasVoxels,
                              const std::vector<std::string>& names, const VolumeHandle& volume) {
-  TrimmedSegments trimmed{*segments, {}};
+  TrimmedSegments trimmed{segments, {}};
+  std::shared_ptr<SegmentsInput> copy;
   const Segmentation& original = segments->segmentation;
   for (const std::string& name : names) {
     const std::size_t number = original.find(name);
@@ -197,8 +198,11 @@ TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
     const SegmentInfo& segment = original.segments()[number];
     const OrganMargin margin =
         findOrganMargin(original.makeMask({segment}, volume->volume.grid), volume->volume);
-    if (margin.isApplied)
-      trimmed.input.segmentation.restrictSegment(segment, margin.kept);
+    if (margin.volume > 0.0) {
+      if (!copy)
+        trimmed.input = copy = std::make_shared<SegmentsInput>(*segments);
+      copy->segmentation.restrictSegment(segment, margin.kept);
+    }
     trimmed.margins.push_back(
         {segment.name, margin.isApplied, margin.volume, margin.mean, margin.p95});
   }

@@ -38,7 +38,7 @@ struct SegmentMargin {
   double volume, mean, p95;
 };
 struct TrimmedSegments {
-  SegmentsInput input;                ///< with the margins
+  Handle<SegmentsInput> input;        ///< with the margins; the given one if nothing is removed
   std::vector<SegmentMargin> margins; ///< in the order of the names
 };
 /// Removes what belongs to other tissue from the segments `names` (OrganMargin.h). `hasVoxels`:

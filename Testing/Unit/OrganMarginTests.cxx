@@ -174,6 +174,10 @@ protected:
     for (std::int16_t& voxel : voxels)
       voxel = static_cast<std::int16_t>(voxel + 2000);
     writeFile(folder / "mr.nrrd", voxels, geometry);
+    std::ranges::fill(voxels, static_cast<std::int16_t>(organ));
+    voxels[0] = 900;
+    voxels[1] = -1000;
+    writeFile(folder / "uniform.nrrd", voxels, geometry);
     writeFile(folder / "labels.nrrd", phantom.label.voxels, geometry);
     count = phantom.label.count;
     request.input = folder / "ct.nrrd";
@@ -221,6 +225,21 @@ TEST_F(OrganMarginScene, TrimsFocusAndTint) {
   const PreparedScene whole = trimmed.withRequest(request);
   EXPECT_EQ(whole.focus()->count, count);
   EXPECT_TRUE(whole.margins().empty());
+}
+
+/// Where nothing is removed, the segments are not copied: the focus is the same.
+TEST_F(OrganMarginScene, SharesSegmentsThatItDoesNotTrim) {
+  const PreparedScene trimmed(request);
+  request.focusStyle.hasOrganMargin = false;
+  EXPECT_TRUE(trimmed.withRequest(request).updatedStages().focus);
+  request.focusStyle.hasOrganMargin = true;
+  request.input = folder / "uniform.nrrd";
+  const PreparedScene scene(request);
+  ASSERT_EQ(scene.margins().size(), 1U);
+  EXPECT_TRUE(scene.margins()[0].isApplied);
+  EXPECT_EQ(scene.focus()->count, count);
+  request.focusStyle.hasOrganMargin = false;
+  EXPECT_FALSE(scene.withRequest(request).updatedStages().focus);
 }
 
 TEST_F(OrganMarginScene, OnlyForCt) {
