@@ -126,16 +126,18 @@ bool isLightsFile(const std::string& name) {
 
 NamedMaterials findMaterials(const std::string& name,
                              const std::optional<double>& contextSaturation) {
+  NamedMaterials materials{materialLibrary(), name};
   if (!isMaterialsFile(name)) {
-    NamedMaterials materials{materialLibrary(), name};
     materials.table.hasContrast = materials.table.detectsSkin = name == contrastMaterials;
-    if (name == libraryMaterials)
-      materials.table.context.saturation = contextSaturation;
-    return materials;
-  }
-  if (!isExistingFile(name))
+  } else if (isExistingFile(name)) {
+    materials.table = parseMaterials(readText(name), name, materials.table);
+    materials.files = {name};
+  } else {
     throw makeUnknownError(name, "none, library, contrast, or a file");
-  return {parseMaterials(readText(name), name, materialLibrary()), name, {name}};
+  }
+  if (contextSaturation)
+    materials.table.context.saturation = contextSaturation;
+  return materials;
 }
 
 bool isMaterialsFile(const std::string& name) {

@@ -61,8 +61,8 @@ struct NamedMaterials {
   }
 };
 /// Materials of the library ("contrast": with contrast adjustment and skin detection), or of a file
-/// whose rules precede the library's. `contextSaturation`: for "library", if there is a focus.
-/// Throws Error (input).
+/// whose rules precede the library's. `contextSaturation`: replaces that of the materials. Throws
+/// Error (input).
 NamedMaterials findMaterials(const std::string& name,
                              const std::optional<double>& contextSaturation = {});
 

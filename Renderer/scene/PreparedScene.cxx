@@ -141,9 +141,9 @@ std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segment
 
 void PreparedScene::makeTint(const std::string& name) {
   const RenderRequest& r = m_request;
-  std::optional<double> saturation; // of the context; a given one applies to the final colors
-  if (!r.focus.empty())
-    saturation = r.focusStyle.contextSaturation ? 1.0 : defaultContextSaturation;
+  std::optional<double> saturation = r.focusStyle.contextSaturation;
+  if (!saturation && name == libraryMaterials && !r.focus.empty())
+    saturation = defaultContextSaturation;
   const auto materials = m_materials.get(name, saturation);
   const bool isAdjusted = materials->hasColorAdjustment();
   const auto hasVoxels = m_hasVoxels.get(m_segments.result());
@@ -159,8 +159,7 @@ void PreparedScene::makeTint(const std::string& name) {
     return;
   const auto interfaces =
       m_interfaces.get(currentVolume(), m_focus.result(), transfer, weights, plan->isFocus);
-  const auto contrast = m_tintContrast.get(interfaces, plan, tint, materials, transfer,
-                                           r.focusStyle.contextSaturation);
+  const auto contrast = m_tintContrast.get(interfaces, plan, tint, materials, transfer);
   m_adjustedTint.get(tint, plan, contrast, transfer);
 }
 

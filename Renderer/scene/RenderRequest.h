@@ -57,8 +57,10 @@ struct FocusRequest {
   /// Applies an OrganMargin to each segment of the focus if the volume seems to be CT.
   bool hasOrganMargin = true;
   double contextExtinction = 1.0; ///< factor of the extinction outside the focus, 0 to 1
-  /// Factor of the color saturation outside the focus, 0 to 1. By default 1 with materials, which
-  /// adjust the context's colors themselves, else defaultContextSaturation (Contrast.h).
+  /// Factor of the color saturation outside the focus, 0 to 1: of the materials' colors in CIELAB
+  /// (ColorAdjustment), without materials of the albedo (ContextStyle). By default what a file of
+  /// materials states or "contrast" finds, else defaultContextSaturation (Contrast.h); 1 with a
+  /// file that does neither.
   std::optional<double> contextSaturation = {};
 
   bool operator==(const FocusRequest&) const = default;
@@ -85,7 +87,7 @@ inline constexpr const char* noMaterials = "none";
 
 /// Library materials, adjusted so that the focus contrasts with its surroundings (TintContrast.h).
 inline constexpr const char* contrastMaterials = "contrast";
-/// Library materials; around a focus, with a context of defaultContextSaturation.
+/// Library materials. Around a focus, the context has defaultContextSaturation by default.
 inline constexpr const char* libraryMaterials = "library";
 
 struct RenderRequest {

@@ -333,10 +333,8 @@ TintInterfaces findTintInterfaces(const VolumeHandle& volume, const FocusHandle&
 TintContrast adjustTintContrast(const Handle<TintInterfaces>& interfaces,
                                 const Handle<TintPlan>& plan, const Handle<Tint>& tint,
                                 const Handle<NamedMaterials>& materials,
-                                const Handle<TransferChoice>& transfer,
-                                const std::optional<double>& saturation) {
-  return adjustContrast(*interfaces, *plan, *tint, materials->table, transfer->function,
-                        saturation.value_or(1.0));
+                                const Handle<TransferChoice>& transfer) {
+  return adjustContrast(*interfaces, *plan, *tint, materials->table, transfer->function);
 }
 
 Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
@@ -352,9 +350,7 @@ Tint adjustTint(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
 FocusContrast chooseContrast(const VolumeHandle& volume, const FocusHandle& focus,
                              const Handle<TransferChoice>& transfer, const Handle<Tint>& tint,
                              const std::optional<double>& saturation) {
-  if (tint)
-    return {saturation.value_or(1.0)};
-  if (!focus->mask)
+  if (tint || !focus->mask)
     return {};
   return measureFocusContrast(saturation.value_or(defaultContextSaturation), *focus->mask,
                               volume->volume, transfer->function);

@@ -141,8 +141,7 @@ TintInterfaces findTintInterfaces(const VolumeHandle& volume, const FocusHandle&
 TintContrast adjustTintContrast(const Handle<TintInterfaces>& interfaces,
                                 const Handle<TintPlan>& plan, const Handle<Tint>& tint,
                                 const Handle<NamedMaterials>& materials,
-                                const Handle<TransferChoice>& transfer,
-                                const std::optional<double>& saturation);
+                                const Handle<TransferChoice>& transfer);
 
 /// Requires that isTintOnly() is false.
 Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
@@ -151,8 +150,8 @@ Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
 Tint adjustTint(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
                 const Handle<TintContrast>& contrast, const Handle<TransferChoice>& transfer);
 
-/// `saturation`: of the request. `tint`: null without materials. With materials, the result
-/// is 1 by default: adjustTintContrast adjusts the context's colors and reports the contrast.
+/// `saturation`: of the request. `tint`: null without materials. With materials, the result is 1:
+/// adjustTintContrast adjusts the context's colors and reports the contrast.
 FocusContrast chooseContrast(const VolumeHandle& volume, const FocusHandle& focus,
                              const Handle<TransferChoice>& transfer, const Handle<Tint>& tint,
                              const std::optional<double>& saturation);

@@ -3,7 +3,6 @@
 #include "base/Color.h"
 #include "base/Text.h"
 #include "io/MessageText.h"
-#include "model/medium/ContextStyle.h"
 #include "model/medium/Reflectance.h"
 
 #include <algorithm>
@@ -67,13 +66,8 @@ const ColorFunction& albedoOf(const std::optional<ColorFunction>& own,
 /// Increases the adjustment until the interface has enough contrast.
 class AdjustmentSearch {
 public:
-  AdjustmentSearch(const std::vector<InterfaceColors>& colors, const ColorAdjustment& start,
-                   double saturation, double g)
-      : m_colors(&colors),
-        m_saturation(saturation),
-        m_g(g),
-        m_adjustment(start),
-        m_score(computeScore(start)) {}
+  AdjustmentSearch(const std::vector<InterfaceColors>& colors, const ColorAdjustment& start)
+      : m_colors(&colors), m_adjustment(start), m_score(computeScore(start)) {}
 
   const ColorAdjustment& adjustment() const { return m_adjustment; }
 
@@ -130,12 +124,11 @@ private:
   }
   double computeScore(const ColorAdjustment& adjustment) const {
     return mean([&](const InterfaceColors& part) {
-      return contrastScore(measureAdjustedContrast(adjustment, part, m_saturation, m_g));
+      return contrastScore(measureAdjustedContrast(adjustment, part));
     });
   }
 
   const std::vector<InterfaceColors>* m_colors;
-  double m_saturation, m_g;
   ColorAdjustment m_adjustment;
   double m_score;
 };
@@ -185,12 +178,9 @@ double contrastScore(const Contrast& contrast) {
                  std::min(1.0, contrast.deltaL / lightness));
 }
 
-Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const InterfaceColors& colors,
-                                 double saturation, double g) {
-  const ContextStyle style{.focus = nullptr, .saturation = saturation};
+Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const InterfaceColors& colors) {
   const Rgb focus = adjustFocus(colors.focus, adjustment),
-            context = toReflectance(
-                Rgb(style.desaturate(toAlbedo(adjustContext(colors.context, adjustment), g))), g);
+            context = adjustContext(colors.context, adjustment);
   const auto measure = [&](double shade) {
     return measureContrast(toImageColor(focus, 0.0), toImageColor(context, shade), deltaE76);
   };
@@ -200,8 +190,7 @@ Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const Interf
 }
 
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
-                                 const ContextColors& context, Adjustable adjustable,
-                                 double saturation, double g) {
+                                 const ContextColors& context, Adjustable adjustable) {
   constexpr double minSaturation = 0.4, maxShift = 25.0, maxAccent = 0.6;
   const bool isFocusAdjustable = adjustable == Adjustable::both;
   ColorAdjustment start{.contextSaturation = context.saturation.value_or(1.0),
@@ -210,7 +199,7 @@ ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
     return start;
   if (!context.saturation && isFocusAdjustable)
     start.contextSaturation = defaultContextSaturation;
-  AdjustmentSearch darker(colors, start, saturation, g);
+  AdjustmentSearch darker(colors, start);
   if (!context.saturation)
     darker.increase(&ColorAdjustment::contextSaturation, isFocusAdjustable ? minSaturation : 0.0);
   if (!isFocusAdjustable)
@@ -226,10 +215,9 @@ ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
 
 TintContrast adjustContrast(const std::vector<ComponentInterface>& interfaces, const TintPlan& plan,
                             const Tint& tint, const MaterialTable& table,
-                            const TransferFunction& transfer, double saturation) {
-  const double g = transfer.g;
+                            const TransferFunction& transfer) {
   const auto reflected = [&](std::uint8_t component, double scalar) {
-    return toReflectance(Rgb(albedoOf(tint.albedo[component], transfer)(scalar)), g);
+    return toReflectance(Rgb(albedoOf(tint.albedo[component], transfer)(scalar)), transfer.g);
   };
   const std::vector<ComponentInterface> parts = selectMajor(interfaces);
   std::vector<InterfaceColors> colors;
@@ -241,10 +229,9 @@ TintContrast adjustContrast(const std::vector<ComponentInterface>& interfaces, c
   const Adjustable adjustable = !table.hasContrast ? Adjustable::nothing
                                 : isKnown          ? Adjustable::both
                                                    : Adjustable::context;
-  TintContrast result{.adjustment =
-                          chooseAdjustment(colors, table.context, adjustable, saturation, g)};
+  TintContrast result{.adjustment = chooseAdjustment(colors, table.context, adjustable)};
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Contrast contrast = measureAdjustedContrast(result.adjustment, colors[i], saturation, g);
+    const Contrast contrast = measureAdjustedContrast(result.adjustment, colors[i]);
     if (result.contrast && contrastScore(contrast) >= contrastScore(*result.contrast))
       continue;
     result.contrast = contrast;

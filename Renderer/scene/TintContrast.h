@@ -53,10 +53,8 @@ double contrastScore(const Contrast& contrast);
 inline constexpr double sufficientScore = 0.995;
 
 /// CIELAB contrast of the adjusted colors across the focus edge in an image: the smaller of the
-/// contrasts in the light and in a groove that the focus shades. `saturation`: of the context's
-/// albedo, applied after the adjustment (ContextStyle).
-Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const InterfaceColors& colors,
-                                 double saturation, double g);
+/// contrasts in the light and in a groove that the focus shades.
+Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const InterfaceColors& colors);
 
 /// Which colors may be adjusted. `context`: if the focus has no known material, so that it keeps
 /// the volume's colors.
@@ -69,8 +67,7 @@ enum class Adjustable { nothing, context, both };
 /// If the focus is not adjustable, the context may become gray. Without `colors`, nothing is
 /// adjusted.
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
-                                 const ContextColors& context, Adjustable adjustable,
-                                 double saturation, double g);
+                                 const ContextColors& context, Adjustable adjustable);
 
 struct TintContrast {
   ColorAdjustment adjustment = {};
@@ -78,10 +75,10 @@ struct TintContrast {
   std::optional<Contrast> contrast = {};   ///< at this interface; empty: no visible neighbor
 };
 
-/// Uses neighbors with at least 5 % of the interface. `saturation`: of the context's albedo.
+/// Uses neighbors with at least 5 % of the interface.
 TintContrast adjustContrast(const std::vector<ComponentInterface>& interfaces, const TintPlan& plan,
                             const Tint& tint, const MaterialTable& table,
-                            const TransferFunction& transfer, double saturation);
+                            const TransferFunction& transfer);
 
 /// "contrast of …": one line on contrast and adjustment; empty without a contrast.
 std::string summary(const TintContrast& contrast);

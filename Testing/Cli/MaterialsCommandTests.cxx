@@ -199,6 +199,20 @@ TEST_F(MaterialsCommand, ContextOfAFileAppliesAroundAFocus) {
                folder.path());
 }
 
+TEST_F(MaterialsCommand, GivenSaturationReplacesThatOfTheMaterials) {
+  folder.write("given.json", R"({"version": 1, "context": {"saturation": 0.7}})");
+  folder.write("plain.json", R"({"version": 1})");
+  for (const char* materials : {"none", "library", "contrast", "given.json", "plain.json"}) {
+    Arguments arguments =
+        makeArguments({"--focus", "A", "--context-saturation", "0.3", "--materials", materials,
+                       "--stats-json", "s.json", "--output", "a.png"});
+    const Outcome outcome = run(arguments, folder.path());
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto stats = nlohmann::json::parse(readBytes(folder / "s.json"));
+    EXPECT_EQ(stats.at("contrast").at("contextSaturation"), 0.3) << materials;
+  }
+}
+
 /// The clip removes everything but a segment with clip=no.
 TEST_F(MaterialsCommand, DensityAndClippingCanBeSetPerSegment) {
   folder.write("dense.json",

@@ -243,14 +243,18 @@ TEST_F(SceneChange, ColorChangesReuseTheLabels) {
   EXPECT_FALSE(green.withRequest(request).tint());
 }
 
-TEST_F(SceneChange, MaterialsKeepTheContextSaturatedUnlessRequested) {
+TEST_F(SceneChange, MaterialsAdjustTheSaturationOfTheContext) {
   ASSERT_LT(PreparedScene(request).contrast().saturation, 1.0);
   request.materials = "library";
-  EXPECT_EQ(PreparedScene(request).contrast().saturation, 1.0);
-  EXPECT_FALSE(PreparedScene(request).contrast().contrast)
-      << "it would be computed for other colors";
+  const PreparedScene library(request);
+  EXPECT_EQ(library.contrast().saturation, 1.0) << "not twice";
+  EXPECT_FALSE(library.contrast().contrast) << "it would be computed for other colors";
+  EXPECT_EQ(library.tintContrast()->adjustment.contextSaturation, defaultContextSaturation);
   request.focusStyle.contextSaturation = 0.4;
-  EXPECT_EQ(PreparedScene(request).contrast().saturation, 0.4);
+  const PreparedScene muted = library.withRequest(request);
+  EXPECT_EQ(muted.contrast().saturation, 1.0) << "not twice";
+  EXPECT_EQ(muted.tintContrast()->adjustment.contextSaturation, 0.4);
+  EXPECT_FALSE(muted.updatedStages().labelWeights);
 }
 
 TEST_F(SceneChange, NewCameraDoesNotUpdateLightsInWorldFrame) {
