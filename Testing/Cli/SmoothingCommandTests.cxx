@@ -102,17 +102,29 @@ TEST_F(SmoothingCommand, GivenNoiseAppliesToEveryRequest) {
 }
 
 TEST_F(SmoothingCommand, IslandsOfOpacityAreRemovedWithTheNoise) {
-  const std::string transfer =
-      R"({"extinction": [[20, 0], [300, 5]], "color": [[20, "#808080"]], "islands": 9})";
-  const auto count = [&](const std::string& kind) {
-    render({"--volume-smoothing", kind, "--transfer", transfer, "-o", "a.png", "--stats-json",
-            "s.json"});
-    return readStats("s.json");
+  const std::string knots = R"("extinction": [[20, 0], [300, 50]], "color": [[20, "#808080"]])";
+  const auto renderAlpha = [&](const std::string& kind, const std::string& islands) {
+    render({"--volume-smoothing", kind, "--transfer", "{" + knots + islands + "}", "--background",
+            "transparent", "-o", "a.png", "-o", "a.exr", "--stats-json", "s.json"});
+    return readImage(folder / "a.exr").channels.at("A");
   };
-  const nlohmann::json smoothing = count("auto").at("volumeSmoothing");
+  const auto raw = renderAlpha("off", R"(, "islands": 9)");
+  EXPECT_FALSE(readStats("s.json").contains("volumeSmoothing"));
+  const auto countLost = [&](const auto& alpha) {
+    int lost = 0;
+    for (std::size_t i = 0; i < raw.size(); ++i)
+      lost += raw[i] > 0.0F && alpha[i] == 0.0F;
+    return lost;
+  };
+  const auto whole = renderAlpha("auto", "");
+  EXPECT_EQ(countLost(whole), 0) << "smoothing alone";
+  const auto alpha = renderAlpha("auto", R"(, "islands": 9)");
+  EXPECT_GE(countLost(alpha), 1) << "the island";
+  EXPECT_LE(countLost(alpha), 4) << "the box remains";
+  EXPECT_GT(std::ranges::count(alpha, 1.0F), 50);
+  const nlohmann::json smoothing = readStats("s.json").at("volumeSmoothing");
   EXPECT_EQ(smoothing.at("islands").at("count"), 1);
   EXPECT_EQ(smoothing.at("islands").at("mm3"), 1.0);
-  EXPECT_FALSE(count("off").contains("volumeSmoothing"));
 }
 
 TEST_F(SmoothingCommand, ResumedRenderShowsTheMediumOfItsCheckpoint) {

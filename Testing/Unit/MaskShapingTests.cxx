@@ -4,6 +4,7 @@
 #include "base/Error.h"
 #include "clip/focus/FocusDepth.h"
 #include "files/segments/SegmentationReader.h"
+#include "model/masks/EqualVolume.h"
 
 #include <gtest/gtest.h>
 
@@ -183,9 +184,19 @@ TEST(MaskShaping, AutomaticSmoothingPreservesThinParts) {
     EXPECT_LT(valueAt(plain, Vec3(-15.0, 0.0, z)), plain.threshold());
     EXPECT_GE(valueAt(smooth, Vec3(-15.0, 0.0, z)), smooth.threshold());
   }
-  // On the ball's surface; equal volume multiplies the odds there by about 1.4.
-  EXPECT_GT(valueAt(smooth, Vec3(11.0, 0.0, 0.0)), valueAt(plain, Vec3(11.0, 0.0, 0.0)));
-  EXPECT_NEAR(valueAt(smooth, Vec3(11.0, 0.0, 0.0)), valueAt(plain, Vec3(11.0, 0.0, 0.0)), 25);
+  // Equal volume multiplies the odds inside : outside of all voxels of the ball by one factor.
+  const auto findOdds = [](int value) { return value / (255.0 - value); };
+  const Vec3 surface(11.0, 0.0, 0.0);
+  const double factor = findOdds(valueAt(smooth, surface)) / findOdds(valueAt(plain, surface));
+  EXPECT_GT(factor, 1.2);
+  for (double x = -3.0; x < 14.0; ++x)
+    for (double y = -8.0; y < 9.0; ++y) {
+      const Vec3 p(x, y, 2.0);
+      const double odds = factor * findOdds(valueAt(plain, p));
+      EXPECT_NEAR(valueAt(smooth, p), std::isinf(odds) ? 255.0 : 255.0 * odds / (1.0 + odds), 2.0)
+          << x << ' ' << y;
+    }
+  EXPECT_NEAR(measureVolumeChange(mask, smooth, volume), 0.0, 0.002);
   const Mask flakes = makeMask(makeCenteredGrid({9, 9, 9}, {1.0, 1.0, 0.01}),
                                [](const Vec3& p) { return std::abs(p.x()) < 2.5; });
   EXPECT_EQ(smoothMaskAuto(flakes, 1.0, volume).maxValue, 1) << "unchanged";
