@@ -49,13 +49,15 @@ bool isEmptyAround(const Mask& mask, std::size_t voxel) {
          });
 }
 
-/// Restores voxels of thin parts that smoothing erased together with their neighbors.
-void restoreErased(const std::vector<std::size_t>& thin, Mask& smooth) {
+/// Restores voxels of thin parts that smoothing erased together with their neighbors. Returns true
+/// if there are any.
+bool restoreErased(const std::vector<std::size_t>& thin, Mask& smooth) {
   std::vector<std::size_t> erased;
   std::ranges::copy_if(thin, std::back_inserter(erased),
                        [&](std::size_t voxel) { return isEmptyAround(smooth, voxel); });
   for (const std::size_t voxel : erased)
     smooth.voxels[voxel] = smooth.maxValue;
+  return !erased.empty();
 }
 
 } // namespace
@@ -71,7 +73,10 @@ Mask smoothMaskAuto(const Mask& mask, double native, const Grid& volume) {
   if (!thin.places.empty())
     sharpen(mask, first, thin.places, result);
   equalizeVolume(mask, volume, result);
-  restoreErased(thin.inside, result);
+  if (restoreErased(thin.inside, result)) { // with more volume
+    equalizeVolume(mask, volume, result);
+    restoreErased(thin.inside, result);
+  }
   result.count = result.countInside();
   return result;
 }
