@@ -40,13 +40,14 @@ struct Phantom {
   Volume volume;
 };
 
-/// `noise`: HU. The label includes what protrudes of the lesion.
-Phantom makePhantom(double noise, const std::optional<Lesion>& lesion = {}, double scale = 1.0) {
+/// `noise`: HU. The label includes what protrudes of the lesion, unless it ends at the capsule.
+Phantom makePhantom(double noise, const std::optional<Lesion>& lesion = {}, double scale = 1.0,
+                    bool endsAtCapsule = false) {
   const Grid grid = makeCenteredGrid({62, 54, 56}, scale * Vec3(1.5, 1.5, 1.5));
   Phantom phantom{makeMask(grid,
                            [&](const Vec3& p) {
                              return computeDistance(p / scale) < (p.x() > 0.0 ? 1.5 : 0.0) ||
-                                    (lesion && lesion->distance(p) < 0.0);
+                                    (lesion && !endsAtCapsule && lesion->distance(p) < 0.0);
                            }),
                   {}};
   phantom.volume.grid = grid;
@@ -139,6 +140,18 @@ TEST(OrganMargin, PreservesLesions) {
         expectPreserved(10.0, depth, value, noise);
   expectPreserved(10.0, 5.0, 20.0, 33.0); // as faint as what is still removed
   expectPreserved(20.0, 10.0, 10.0, 33.0);
+}
+
+/// Lesions half outside a label that ends at the capsule lose at most 5 % of what it contains.
+TEST(OrganMargin, PreservesLesionsAcrossTheCapsule) {
+  for (const Vec3& direction :
+       {Vec3(0.99, 0.0, -0.14), Vec3(0.3, 0.8, 0.5), Vec3(-0.5, -0.6, -0.6)})
+    for (const auto& [value, noise] : {std::pair(0.0, 33.0), std::pair(20.0, 10.0),
+                                       std::pair(20.0, 33.0), std::pair(400.0, 33.0)}) {
+      const Lesion lesion{direction / direction.cwiseQuotient(radii).norm(), 10.0, value};
+      EXPECT_LE(computeLoss(makePhantom(noise, lesion, 1.0, true), lesion), 0.05)
+          << value << " HU, noise " << noise << ", " << direction.x();
+    }
 }
 
 TEST(OrganMargin, IsNotAppliedToSmallOrMixedSegments) {

@@ -20,10 +20,14 @@ constexpr double deviations = 3.5;       ///< robust standard deviations that be
 constexpr double leastDifference = 25.0; ///< HU; differences within an organ
 constexpr double tested = 1.0;           ///< mm below the new surface, where it must be organ
 /// Lesions: radius, mm, of a ball that fits in, and the rim around it.
-constexpr double lesionRadius = 1.25, fatRadius = 4.0, lesionRim = 2.5;
+constexpr double lesionRadius = 1.25, fatRadius = 4.0, lesionRim = 3.0;
 constexpr float leastSoft = -30.0F;    ///< HU; fat, lung and air are below
 constexpr double lesionFraction = 0.6; ///< of the range: partial volume around a lesion
-constexpr double maxMoved = 12.0;      ///< mm, measured
+/// Centers of balls in lesions across the surface: volume, mm^3, to exclude noise; fraction
+/// inside; extent, mm. Neighboring organs have less than
+/// 0.05 inside; sheets extend farther, and larger lesions are thick inside, too.
+constexpr double leastSize = 12.0, leastInside = 1.0 / 3.0, mostExtent = 20.0;
+constexpr double maxMoved = 12.0; ///< mm, measured
 
 using Marks = std::vector<std::uint8_t>; ///< 1: voxels of a set
 
@@ -158,11 +162,14 @@ public:
       : m_grid(segment.grid),
         m_inside(segment.voxels),
         m_isBeside(segment.voxels.size()),
+        m_isNear(segment.voxels.size()),
         m_values(resample(volume, m_grid)),
         m_medians(segment.voxels.size()) {
     Marks outside(m_inside.size());
     std::ranges::transform(m_inside, outside.begin(), [](std::uint8_t voxel) { return !voxel; });
     m_depth = computeDistances(outside, m_grid, deep);
+    std::ranges::transform(computeDistances(m_inside, m_grid, 2.0 * deep), m_isNear.begin(),
+                           [](float away) { return away <= static_cast<float>(deep); });
     forEachVoxel(m_grid.size, [&](const Size3& voxel, std::size_t i) {
       if (!m_inside[i])
         forEachNeighbor(voxel, m_grid.size, [&](const Size3&, std::size_t next, int) {
@@ -171,7 +178,7 @@ public:
     });
     forEachRow(m_grid.size, [&](std::int64_t y, std::int64_t z, std::size_t row) {
       for (std::int64_t x = 0; x < m_grid.size.x(); ++x)
-        if (const std::size_t i = row + static_cast<std::size_t>(x); m_inside[i] || m_isBeside[i])
+        if (const std::size_t i = row + static_cast<std::size_t>(x); m_isNear[i])
           m_medians[i] = computeLocalMedian(m_values, {x, y, z}, m_grid.size);
     });
   }
@@ -244,38 +251,99 @@ private:
     return isIn(m_values, values) && isIn(m_medians, medians);
   }
 
-  /// Bodies of other tissue, in contrast to sheets: opening of it by a ball, with a rim.
+  /// Bodies of other tissue, in contrast to sheets: opening of it by a ball, with a rim. Those of
+  /// soft tissue are also searched beyond the label, since many end at the organ's capsule.
   Marks findLesions(const TissueRange& values, const TissueRange& medians) const {
     Marks lesions(m_inside.size());
-    const auto add = [&](double radius, const auto& isOther) {
-      Marks rest(m_inside.size());
-      for (std::size_t i = 0; i < rest.size(); ++i)
-        rest[i] = !m_inside[i] || !isOther(i);
-      const Vec3 spacing = m_grid.spacing();
-      const double edge = spacing.maxCoeff();
-      const double middle = spacing.sum() - edge - spacing.minCoeff();
-      // Between voxel centers: wider than partial volume of two voxels, also diagonally.
-      const double reach = std::max({radius + 0.5 * edge, 1.01 * edge, 1.45 * middle});
-      Marks cores(rest.size());
-      const std::vector<float> toRest = computeDistances(rest, m_grid, reach + edge);
-      for (std::size_t i = 0; i < rest.size(); ++i)
-        cores[i] = toRest[i] > static_cast<float>(reach);
-      const std::vector<float> toCores = computeDistances(cores, m_grid, reach + lesionRim + edge);
-      for (std::size_t i = 0; i < rest.size(); ++i)
-        lesions[i] |= toCores[i] <= static_cast<float>(reach + lesionRim);
-    };
-    add(lesionRadius, [&](std::size_t i) {
+    const auto isSoft = [&](std::size_t i) {
       return m_medians[i] > leastSoft && !medians.contains(m_medians[i], lesionFraction);
-    });
-    add(fatRadius, [&](std::size_t i) {
-      return !medians.contains(m_medians[i]) || !values.contains(m_values[i]);
-    });
+    };
+    const auto isBrighter = [&](std::size_t i) {
+      return static_cast<double>(m_medians[i]) > medians.median;
+    };
+    const auto isSoftInside = [&](std::size_t i) { return m_inside[i] && isSoft(i); };
+    addBodies(findCores(lesionRadius, isSoftInside), lesionRadius, lesions);
+    for (const bool bright : {false, true}) {
+      const auto isSoftNear = [&](std::size_t i) {
+        return m_isNear[i] && isSoft(i) && isBrighter(i) == bright;
+      };
+      Marks cores = findCores(lesionRadius, isSoftNear);
+      removeNeighbors(cores);
+      addBodies(cores, lesionRadius, lesions);
+    }
+    const auto isOther = [&](std::size_t i) {
+      return m_inside[i] && (!medians.contains(m_medians[i]) || !values.contains(m_values[i]));
+    };
+    addBodies(findCores(fatRadius, isOther), fatRadius, lesions);
     return lesions;
+  }
+
+  /// Distance, mm, between the center of a ball of `radius` mm in a body and voxels beside it:
+  /// wider than partial volume of two voxels, also diagonally.
+  double findReach(double radius) const {
+    const Vec3 spacing = m_grid.spacing();
+    const double edge = spacing.maxCoeff();
+    const double middle = spacing.sum() - edge - spacing.minCoeff();
+    return std::max({radius + 0.5 * edge, 1.01 * edge, 1.45 * middle});
+  }
+
+  /// Centers of balls of `radius` mm in a set of voxels.
+  template <typename Predicate>
+  Marks findCores(double radius, const Predicate& isOther) const {
+    const double reach = findReach(radius);
+    Marks rest(m_inside.size()), cores(rest.size());
+    for (std::size_t i = 0; i < rest.size(); ++i)
+      rest[i] = !isOther(i);
+    std::ranges::transform(computeDistances(rest, m_grid, reach + m_grid.spacing().maxCoeff()),
+                           cores.begin(),
+                           [reach](float away) { return away > static_cast<float>(reach); });
+    return cores;
+  }
+
+  /// Adds balls of `radius` mm around the cores, with a rim.
+  void addBodies(const Marks& cores, double radius, Marks& bodies) const {
+    const double most = findReach(radius) + lesionRim;
+    const std::vector<float> away =
+        computeDistances(cores, m_grid, most + m_grid.spacing().maxCoeff());
+    for (std::size_t i = 0; i < away.size(); ++i)
+      bodies[i] |= away[i] <= static_cast<float>(most);
+  }
+
+  /// Clears connected parts that are mostly outside, or extend far.
+  void removeNeighbors(Marks& cores) const {
+    Marks visited(cores.size());
+    std::vector<Size3> part;
+    const auto visit = [&](const Size3& voxel, std::size_t i) {
+      if (cores[i] && !visited[i])
+        part.push_back(voxel);
+      visited[i] = 1;
+    };
+    forEachVoxel(m_grid.size, [&](const Size3& voxel, std::size_t seed) {
+      part.clear();
+      visit(voxel, seed);
+      Size3 lower = voxel, upper = voxel;
+      double inside = 0.0;
+      for (std::size_t k = 0; k < part.size(); ++k) {
+        const Size3 core = part[k];
+        lower = lower.cwiseMin(core);
+        upper = upper.cwiseMax(core);
+        inside += m_inside[linearIndex(core, m_grid.size)];
+        forEachNeighbor(core, m_grid.size,
+                        [&](const Size3& next, std::size_t i, int) { visit(next, i); });
+      }
+      const Vec3 extent = (upper - lower).cast<double>().cwiseProduct(m_grid.spacing());
+      const double size = static_cast<double>(part.size()) * m_grid.spacing().prod();
+      if (size < leastSize || inside < leastInside * static_cast<double>(part.size()) ||
+          extent.maxCoeff() > mostExtent)
+        for (const Size3& core : part)
+          cores[linearIndex(core, m_grid.size)] = 0;
+    });
   }
 
   const Grid& m_grid;
   const Marks& m_inside;
   Marks m_isBeside; ///< outside, with a face in common with the segment
+  Marks m_isNear;   ///< inside or at most `deep` outside
   std::vector<float> m_values, m_medians, m_depth;
 };
 

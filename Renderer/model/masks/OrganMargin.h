@@ -19,8 +19,10 @@ struct OrganMargin {
 
 /// Compares the voxels of a binary mask within 6 mm of its surface with those deeper than 8 mm, and
 /// removes, from the surface inward, what differs by more than 3.5 robust standard deviations (at
-/// least 25 HU). Not removed, with a rim of 2.5 mm, are bodies: soft tissue or calcification that
-/// is thicker than 2.5 mm plus a voxel, and any other tissue thicker than 8 mm plus a voxel.
+/// least 25 HU). Not removed, with a rim of 3 mm, are bodies: soft tissue or calcification that is
+/// thicker than 2.5 mm plus a voxel, and any other tissue thicker than 8 mm plus a voxel. The
+/// former may reach beyond the mask if at least a third is inside and they are no larger than 20 mm
+/// (neighboring organs have a few percent inside).
 /// Applies only if at least 500 voxels are deeper than 8 mm, with a median above -30 HU (not lung)
 /// and a robust standard deviation of at most 60 HU. `volume`: CT, with or without noise. Time and
 /// memory grow with the mask's grid.
