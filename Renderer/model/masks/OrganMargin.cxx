@@ -23,9 +23,9 @@ constexpr double tested = 1.0;           ///< mm below the new surface, where it
 constexpr double lesionRadius = 1.25, fatRadius = 4.0, lesionRim = 3.0;
 constexpr float leastSoft = -30.0F;    ///< HU; fat, lung and air are below
 constexpr double lesionFraction = 0.6; ///< of the range: partial volume around a lesion
-/// Centers of balls in lesions across the surface: volume, mm^3, to exclude noise; fraction
-/// inside; extent, mm. Neighboring organs have less than
-/// 0.05 inside; sheets extend farther, and larger lesions are thick inside, too.
+/// Centers of balls in lesions across the surface: volume, mm^3, to exclude noise; fraction inside;
+/// extent, mm. Neighboring organs have less than 0.05 inside; sheets extend farther, and larger
+/// lesions are thick inside, too.
 constexpr double leastSize = 12.0, leastInside = 1.0 / 3.0, mostExtent = 20.0;
 constexpr double maxMoved = 12.0; ///< mm, measured
 
