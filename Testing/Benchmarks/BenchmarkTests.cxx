@@ -21,7 +21,7 @@ constexpr const char* samples = FENESTRA_SAMPLES; // small phantoms
 constexpr const char* foot = " {phantoms}/foot/foot.mrml --size 32x32 --background 0,0,0\n";
 constexpr const char* knee =
     " {phantoms}/knee/knee.mrml --focus FemoralCartilage --materials none --size 32x32 "
-    "--background 0,0,0\n";
+    "--context-saturation 1 --background 0,0,0\n";
 
 SceneCase makeCase(const std::string& line) {
   const TemporaryFolder folder;
