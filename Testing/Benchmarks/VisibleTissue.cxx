@@ -244,10 +244,12 @@ std::optional<double> measureForeignSurface(const Volume& volume, const Mask& fo
     const TissueRange range = findRange(focus, value);
     if (range.count < 200 || range.deviation > 60.0)
       return std::nullopt;
+    constexpr double leastDeviation = 10.0; // HU
+    const double limit = 3.5 * std::max(range.deviation, leastDeviation);
     double foreign = 0.0, all = 0.0;
     forEachSurfacePoint(focus, [&](const Vec3& world, const Vec3& inward, double area) {
       const double difference = std::abs(value(world + inward) - range.median);
-      foreign += difference > 3.5 * range.deviation ? area : 0.0;
+      foreign += difference > limit ? area : 0.0;
       all += area;
     });
     return foreign / all;
