@@ -1,7 +1,9 @@
 // Feature buffers compared with closed forms and with the means of samples, and SIMD ray marching
 // with scalar.
 
+#include "ClippingTesting.h"
 #include "Support.h"
+#include "clip/surface/ClippingSurface.h"
 #include "denoise/features/FeatureBuffers.h"
 #include "denoise/features/RayMarcher.h"
 
@@ -129,6 +131,12 @@ TEST(FeatureBuffers, SimdAgreesWithScalarMarching) {
   std::vector<Clip> clips = {ClipNone(), makeTiltedClip(s)};
   clips.push_back(
       ClipPlane{Camera(s.pose, s.width, s.height), Vec3(0, 2, 0), -Vec3::UnitY(), {0.0, 3.0}});
+  clips.push_back(
+      buildClippingSurface(
+          Camera(s.pose, s.width, s.height), Domain(s.volume.grid),
+          testing_clipping::makeMask(s.volume.grid, [](const Vec3& p) { return p.norm() < 5.0; }),
+          {.boundary = Boundary::exact, .edge = {0.0, 0.5}})
+          .clip);
   for (std::size_t i = 0; i < 2 * clips.size(); ++i) {
     s.clip = clips[i / 2];
     s.transfer.gradient = i % 2 == 0 ? GradientKind::central : GradientKind::sobel;

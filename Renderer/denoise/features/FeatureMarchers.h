@@ -65,7 +65,6 @@ public:
                      .medium()),
         m_shading(scene.volume.grid, scene.transfer, scene.lights, 0, true, scene.tint,
                   scene.mixture) {
-    m_medium.silhouette = nullptr; // exact surfaces would cost more than they improve features
   }
 
   void integrateHits(std::span<const RasterPoint> points, PrimaryHit* out) const {
