@@ -105,11 +105,32 @@ std::vector<bool> markFocus(const Segmentation& segmentation, const NamedMateria
   return isFocus;
 }
 
-/// Doubles the weights of a smoothed part, up to 1. The focus surface lies at weight 1/2, where the
-/// color would otherwise be mixed with the context's.
+/// Makes the weights of a smoothed part 1 at its surface, where the indicator is 1/2 and the color
+/// would be mixed with the context's, and 0 from the indicator 0.3 on: half a standard deviation of
+/// the smoothing beyond the surface.
 void saturate(Mask& mask) {
+  const int most = mask.maxValue;
   for (std::uint8_t& voxel : mask.voxels)
-    voxel = static_cast<std::uint8_t>(std::min(2 * voxel, int{mask.maxValue}));
+    voxel = static_cast<std::uint8_t>(std::clamp((10 * voxel - 3 * most) / 2, 0, most));
+}
+
+/// True if no voxel can belong to both parts: all their segments are in one layer.
+bool areExclusive(const TintPart& a, const TintPart& b, const std::vector<SegmentInfo>& segments) {
+  if (a.segments.empty() || b.segments.empty())
+    return false;
+  const std::size_t layer = segments[a.segments.front()].layer;
+  const auto isThere = [&](std::size_t i) { return segments[i].layer == layer; };
+  return std::ranges::all_of(a.segments, isThere) && std::ranges::all_of(b.segments, isThere);
+}
+
+/// Raises the priority of the focus to that of the parts that it excludes. Smoothed parts of higher
+/// priority, such as a vein on a vertebra, would otherwise color its surface.
+void raiseFocus(std::vector<TintPart>& parts, const std::vector<SegmentInfo>& segments) {
+  for (TintPart& focus : parts)
+    if (focus.isFocus)
+      for (const TintPart& part : parts)
+        if (!part.isFocus && areExclusive(focus, part, segments))
+          focus.priority = std::max(focus.priority, part.priority);
 }
 
 /// Removes parts of component 0 with lower priority than all others: they cover nothing.
@@ -182,6 +203,7 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& input,
     plan.parts.push_back(
         {std::move(indices), priority, component, canSaturate && plan.isFocus[component]});
   }
+  raiseFocus(plan.parts, segmentation.segments());
   if (skin && skin->count > 0 && !hasSkin(all, *hasVoxels)) {
     const Material& material = materials->table.materials.at(skinMaterial);
     const std::uint8_t component =

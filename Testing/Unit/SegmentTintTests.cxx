@@ -80,7 +80,8 @@ TEST(SegmentTint, FocusIsSeparateIfContrastIsAdjusted) {
   EXPECT_EQ(one.names,
             (std::vector<std::string>{"the rest", "aorta", "kidney_left", "kidney_right"}));
   EXPECT_EQ(one.isFocus, (std::vector<bool>{false, false, false, true}));
-  EXPECT_EQ(one.parts, (Parts{{{4}, 10, 0}, {{2}, 15, 1}, {{0}, 10, 2}, {{1}, 10, 3, true}}));
+  EXPECT_EQ(one.parts, (Parts{{{4}, 10, 0}, {{2}, 15, 1}, {{0}, 10, 2}, {{1}, 15, 3, true}}))
+      << "the focus is not overridden by the aorta, which excludes it";
   const TintPlan both = makePlan(segments, contrast, {}, {"1", "body", "id1"});
   EXPECT_EQ(both.names, (std::vector<std::string>{"the rest", "aorta", "body", "kidney"}));
   EXPECT_EQ(both.isFocus, (std::vector<bool>{false, false, true, true}));
@@ -253,7 +254,38 @@ TEST(SegmentTint, WeightsAndColorsMatchTheLabels) {
   std::vector<TintPart> focus = plan->parts;
   for (TintPart& part : focus)
     part.isFocus = part.component == 1;
-  EXPECT_NEAR(sumLiverWeight(focus), 2.0 * liver, 0.01) << "a focus has twice the weight";
+  EXPECT_NEAR(sumLiverWeight(focus), 5.0 * liver - 1.5, 0.02) << "1 at 1/2, 0 at 0.3";
+}
+
+/// A vein of higher priority beside a vertebra, as 2 x 8 x 8 voxels each. Returns the weight of the
+/// vein on the vertebra's side of their border.
+double measureVein(std::size_t veinLayer) {
+  const Grid grid(Size3(8, 8, 8), Affine::Identity());
+  LargeArray<std::uint8_t> labels(2 * 512); // two layers, adjacent
+  for (std::size_t i = 0; i < 512; ++i) {
+    const std::size_t x = i % 8;
+    labels[2 * i] = x == 2 || x == 3 ? 1 : 0;
+    labels[2 * i + veinLayer] |= x == 4 || x == 5 ? 2 : 0;
+  }
+  std::vector<SegmentInfo> segments{
+      {.id = "a", .name = "vertebrae_L4", .labelValue = 1},
+      {.id = "b", .name = "inferior_vena_cava", .labelValue = 2, .layer = veinLayer}};
+  const auto input = std::make_shared<SegmentsInput>(
+      SegmentsInput{Segmentation("two.seg.nrrd", grid, 2, labels, segments)});
+  const TintPlan plan = makePlan(input, contrast, {}, {"vertebrae_L4"});
+  const LabelWeights weights = computeLabelWeights(input, plan.parts, {}, 1.0, grid);
+  double vein = 0.0;
+  weights.forEachWeight(weights.grid().worldToIndex * Vec3(3, 4, 4),
+                        [&](std::uint8_t component, double weight) {
+                          if (plan.names[component] == "inferior_vena_cava")
+                            vein += weight;
+                        });
+  return vein;
+}
+
+TEST(SegmentTint, FocusHasItsOwnColorBesideASegmentOfHigherPriority) {
+  EXPECT_LT(measureVein(0), 0.05);
+  EXPECT_GT(measureVein(1), 0.1) << "in another layer it may lie inside the focus";
 }
 
 /// Mask of detected skin: the first voxel of the row.
