@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Reproduces figure 3 of the paper: an oblique view of a cube whose scalar is the z index, with an edge of 1 mm
-# and of 512 mm. Writes section "figure3" of README.md. usage: bash Resources/figures/figure3.sh
+# and of 512 mm, under its conditions (--paper), and with an exact surface. Writes section "figure3" of README.md. usage: bash Resources/figures/figure3.sh
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 page=$out/figure3.md
 
@@ -56,14 +56,15 @@ cat >"$page" <<'END'
 
 Written by `figure3.sh`: a cube of 512³ voxels whose scalar is the z index, from -255 (blue) to 255 (red). The focus is a
 cuboid of 255 × 255 × 391 voxels in its center. The paper's "unit cube" has an edge of 1 without a unit, but smoothing with
-p = 0.5 depends on the unit. So the figure has two versions, with edges of 1 mm and 512 mm.
+p = 0.5 depends on the unit. So the figure has two versions, with edges of 1 mm and 512 mm. All images use `--paper`, the
+conditions of the paper; those of `exact` differ in `--clip-boundary exact` alone.
 END
 for mm in 1 512; do
   make_phantom cube "cube-$mm" --edge "$mm"
-  cube=("$out/cube-$mm/cube.mrml" --focus Focus --context-saturation 1)
+  cube=("$out/cube-$mm/cube.mrml" --focus Focus --paper)
   render "cube$mm-plane" "${cube[@]}" --clip plane
   render "cube$mm-cutaway" "${cube[@]}" --clip cutaway
-  render "cube$mm-spline" "${cube[@]}" --clip-boundary spline
+  render "cube$mm-spline" "${cube[@]}"
   render "cube$mm-exact" "${cube[@]}" --clip-boundary exact
   for boundary in spline exact; do
     "$fenestra" "${cube[@]}" --clip-boundary "$boundary" --size 256x256 --samples 1 --quiet \

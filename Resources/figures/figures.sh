@@ -12,8 +12,11 @@ figures=$top/Resources/figures
 out=$top/build/figures
 data=${FENESTRA_DATA:-$top/../shared/data}
 size=${SIZE:-384}
-samples=${SAMPLES:-96}
+samples=${SAMPLES:-32}
 mkdir -p "$out"
+torso=$data/torso_ct_ccth_a01
+aorta=$data/aorta_dissection_totalseg
+aorta_view=(--position=375,-233,742 --target=-15,147,664 --scale 147)
 
 # make_phantom KIND [FOLDER [options]]: writes a phantom unless it exists.
 make_phantom() {
@@ -42,16 +45,16 @@ get() {
   [ -n "$value" ] && printf "${3:-%.2f}" "$value" || printf -- '-'
 }
 
-# join_images FILE.jpg NAME CAPTION ...: puts images side by side.
+# join_images FILE.jpg NAME CAPTION ...: puts images side by side, more than six in two rows.
 join_images() {
-  local file=$1 labels=()
+  local file=$1 labels=() rows=$(($# > 13 ? 2 : 1))
   shift
   while [ $# -gt 0 ]; do
     labels+=(-label "$2" "$out/$1.png")
     shift 2
   done
-  montage -font DejaVu-Sans -pointsize 15 -background '#181818' -fill white -tile x1 -geometry +5+5 \
-    "${labels[@]}" -quality 88 "$figures/$file"
+  montage -font DejaVu-Sans -pointsize 15 -background '#181818' -fill white -tile "x$rows" -geometry +5+5 \
+    "${labels[@]}" -quality 86 "$figures/$file"
 }
 
 # write_section NAME: replaces the lines between <!-- NAME --> and <!-- end of NAME --> of README.md by

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Compares plane, hole, cutaway, ghost and clipping surface (spline and exact) in images and numbers, for knee,
-# foot, liver and cube. Writes section "techniques" of README.md. usage: bash Resources/figures/techniques.sh
+# liver, aorta and cube. Writes section "techniques" of README.md. usage: bash Resources/figures/techniques.sh
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 
 names=(plane hole cutaway ghost spline exact)
@@ -37,24 +37,25 @@ compare_techniques() {
 cat >"$page" <<'END'
 ## Techniques compared
 
-Written by `techniques.sh`: the same view, lights and samples for every technique.
+Written by `techniques.sh`: the same view, lights and samples for every technique, and the defaults; the cube with `--paper`.
 END
 
 make_phantom knee
 compare_techniques knee "Knee: femoral cartilage (synthetic MR)" "$out/knee/knee.nrrd" \
-  --segmentation "$out/knee/knee.seg.nrrd" --materials none --focus "Femoral cartilage" --label-smoothing 0.6 --clip-softness 2 \
-  --transfer mr-knee --position=-15,200,-90
-make_phantom foot
-compare_techniques foot "Foot: its bones (synthetic CT)" "$out/foot/foot.mrml" --materials none --focus bones --label-smoothing 0.6 \
-  --transfer ct-skeleton --view superior
-liver=$data/torso_ct_ccth_a01
-if [ -d "$liver" ]; then
-  compare_techniques liver "Liver (CT of the collection CC-Tumor-Heterogeneity, TCIA, CC BY 4.0)" "$liver/ct.nii.gz" \
-    --segmentation "$liver/seg_totalsegmentator_rtstruct.nii.gz" --materials none --focus 1 --label-smoothing 2 \
-    --transfer ct-anatomy --view anterior
+  --segmentation "$out/knee/knee.seg.nrrd" --focus "Femoral cartilage" --transfer mr-knee --position=-15,200,-90
+if [ -d "$aorta" ]; then
+  compare_techniques aorta "Dissected aorta (CT of TotalSegmentator, Apache 2.0)" "$aorta/ct_cropped.nii.gz" \
+    --segmentation "$aorta/labels.nii.gz" --labels "$aorta/labels.ctbl" --focus aorta_true_lumen,aorta_false_lumen \
+    "${aorta_view[@]}"
+else
+  printf '\n**Aorta**: SKIPPED: FENESTRA_DATA has no aorta_dissection_totalseg.\n' >>"$page"
+fi
+if [ -d "$torso" ]; then
+  compare_techniques liver "Liver (CT of the collection CC-Tumor-Heterogeneity, TCIA, CC BY 4.0)" "$torso/ct.nii.gz" \
+    --segmentation "$torso/seg_totalsegmentator_rtstruct.nii.gz" --labels "$torso/seg_labels.json" --focus liver --view anterior
 else
   printf '\n**Liver**: SKIPPED: FENESTRA_DATA has no torso_ct_ccth_a01.\n' >>"$page"
 fi
 make_phantom cube cube256 --size 256 --edge 512
-compare_techniques cube "Cube of 512 mm (the paper's model)" "$out/cube256/cube.mrml" --focus Focus --context-saturation 1
+compare_techniques cube "Cube of 512 mm (the paper's model)" "$out/cube256/cube.mrml" --focus Focus --paper
 write_section techniques
