@@ -16,7 +16,7 @@ samples=${SAMPLES:-32}
 mkdir -p "$out"
 torso=$data/torso_ct_ccth_a01
 aorta=$data/aorta_dissection_totalseg
-aorta_view=(--position=375,-233,742 --target=-15,147,664 --scale 147)
+aorta_view=(--position=375,-233,742 --target=-15,147,664)
 
 # make_phantom KIND [FOLDER [options]]: writes a phantom unless it exists.
 make_phantom() {
