@@ -261,7 +261,7 @@ measure_record() {
   local folder=${FENESTRA_BUILD:-$top/build}
   if [ -z "${FENESTRA_BUILD:-}" ]; then
     build release "${all_tests[@]}"
-    cmake --build "$folder" --target MutationTests DenoiserBenchmark AppearanceBenchmark
+    cmake --build "$folder" --target MutationTests DenoiserBenchmark
   fi
   rm -rf "$logs/record"
   bash "$top/Testing/Report/measure.sh" "$folder" "$logs/record" "$@" || say "not everything was measured (see above)"

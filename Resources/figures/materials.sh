@@ -1,17 +1,12 @@
 #!/usr/bin/env bash
 # Renders focus segments of real volumes in their natural colors, with --materials contrast, and as that appears with
-# deuteranopia. Writes section "materials" of README.md, with contrasts measured by AppearanceBenchmark, which must be
-# built beside the program. usage: bash Resources/figures/materials.sh
+# deuteranopia. Writes section "materials" of README.md. usage: bash Resources/figures/materials.sh
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 page=$out/materials.md
 size=${SIZE:-512}
-benchmark=$(dirname "$fenestra")/AppearanceBenchmark
-[ -x "$benchmark" ] || die "$benchmark: not found; build it"
 [ -e "$data" ] || die "$data: not found; set FENESTRA_DATA to the folder of volumes"
 
 abdomen="$data/abdomen_ct_totalseg/ct.nii.gz --segmentation $data/abdomen_ct_totalseg/seg_multiorgan.nii.gz"
-knee="$data/spl_knee_atlas_labels/SYNTHETIC_mr_256.nii.gz --segmentation $data/spl_knee_atlas_labels/seg_256.nii.gz"
-knee+=" --labels $data/spl_knee_atlas_labels/knee.ctbl"
 chest="$aorta/ct_cropped.nii.gz --segmentation $aorta/labels.nii.gz --labels $aorta/labels.ctbl"
 heart=heart,aorta,aorta_true_lumen,aorta_false_lumen,pulmonary_artery,brachiocephalic_trunk
 heart+=,subclavian_artery_left,common_carotid_artery_left
@@ -21,17 +16,15 @@ cat >"$page" <<'END'
 
 Written by `materials.sh`. Left: the library's natural [colors](../materials/README.md), the default in CT. Middle:
 `--materials contrast`, which adjusts them just enough that the focus is distinguishable from its surroundings. Right: a
-simulation of deuteranopia (Machado, Oliveira, Fernandes 2009) of the middle image. The contrasts of `--materials contrast`
-are [measured](../../Testing/Benchmarks/README.md) in CIELAB at 512 × 512 across the edge of the focus: ΔE for normal, protan
-and deutan vision, and ΔL*. The targets are 20, 12, 12 and 8.
+simulation of deuteranopia (Machado, Oliveira, Fernandes 2009) of the middle image. The contrasts are those that the renderer
+[expects](../../Renderer/program/README.md) between the focus and the neighbor that differs least: CIELAB ΔE for normal,
+protan and deutan vision, and ΔL*. The targets of `--materials contrast` are 20, 12, 12 and 8.
 END
 
-# measure_contrast "ARGUMENTS": prints ΔE*ab for normal, protan and deutan vision, and ΔL* of the image, within
-# 0.6 of the value with more samples.
-measure_contrast() {
-  # shellcheck disable=SC2086
-  "$benchmark" -- $1 --samples 8 --size 512x512 2>"$out/materials.log" |
-    awk -F , '$2 == "contrast" { print $4 }' | paste -sd , | sed 's/,/, /g; s/, \([^,]*\)$/ and \1/'
+# print_contrast NAME: prints ΔE for normal, protan and deutan vision, and ΔL* of an image, as the renderer expects them.
+print_contrast() {
+  printf '%s, %s, %s and %s' "$(get "$1" .contrast.deltaE %.0f)" "$(get "$1" .contrast.deltaEProtan %.0f)" \
+    "$(get "$1" .contrast.deltaEDeutan %.0f)" "$(get "$1" .contrast.deltaL %.0f)"
 }
 
 # add NAME TITLE "TEXT" "ARGUMENTS" IMAGE...: adds images, side by side, to the page.
@@ -50,15 +43,13 @@ show() {
   convert "$out/$name-contrast.png" -colorspace RGB -color-matrix \
     '0.367322 0.860646 -0.227968 0.280085 0.672501 0.047413 -0.011820 0.042940 0.968881' -colorspace sRGB \
     "$out/$name-deutan.png"
-  add "$1" "$2" "$3 Contrast: $(measure_contrast "$4 --materials contrast")." "$4" \
+  add "$1" "$2" "$3 Contrast: $(print_contrast "$name"); adjusted: $(print_contrast "$name-contrast")." "$4" \
     "$out/$name.png" "$out/$name-contrast.png" "$out/$name-deutan.png"
 }
 
 show heart "Heart, aorta and pulmonary artery" "A CT with contrast agent of a dissected aorta." "$chest --focus $heart --view left"
 show kidneys "Kidneys from behind" "A CT of 3 mm." "$abdomen --focus kidney_left,kidney_right --view posterior"
 show liver "Liver" "The same CT." "$abdomen --focus liver --view auto"
-show cartilage "Cartilage of the knee" "A synthetic MR, painted from a label map. In MR the library is not the default." \
-  "$knee --focus 83 --view auto"
 
 # Segments that the clip does not remove.
 opened="$abdomen --view anterior --clip plane --plane 0,135,300,0,1,0 --materials library"
@@ -72,7 +63,6 @@ add opened "Vessels and kidneys in an opened abdomen" \
   "They have \`clip=no\`; the plane removes everything else in front of them." "$opened" "$out/materials-opened.png"
 cat >>"$page" <<'END'
 
-Chest and abdomen: [TotalSegmentator](https://github.com/wasserth/TotalSegmentator), Apache 2.0. Labels of the knee: SPL Knee
-Atlas.
+Chest and abdomen: [TotalSegmentator](https://github.com/wasserth/TotalSegmentator), Apache 2.0.
 END
 write_section materials
