@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Reproduces figure 1 of the paper on a fresh Debian 12: installs packages, builds, writes a synthetic knee,
+# Shows figure 1 of the paper with the defaults, on a fresh Debian 12: installs packages, builds, writes a synthetic knee,
 # renders it with four clip modes and puts the images side by side. Later runs reuse build and knee.
 # usage: bash Resources/demo.sh [FOLDER]
 set -euo pipefail
@@ -16,10 +16,9 @@ if [ ! -s "$out/knee/knee.nrrd" ] || [ "$fenestra" -nt "$out/knee/knee.nrrd" ]; 
   "$fenestra" phantom knee --output "$out/knee"
 fi
 
-# View from the front and slightly below, onto both lesions of the femoral cartilage. --label-smoothing removes the
-# steps of the label map's 1 mm slices, --clip-softness those of the scan at the border of the cartilage.
+# View from the front and slightly below, onto both lesions of the femoral cartilage.
 scene=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
-  --focus "Femoral cartilage" --label-smoothing 0.6 --position=-15,200,-90 --size 384x384 --samples 16)
+  --focus "Femoral cartilage" --position=-15,200,-90 --size 384x384 --samples 16)
 
 render() { # MODE [options]
   local mode=$1
@@ -29,11 +28,11 @@ render() { # MODE [options]
     --output "$out/$mode.exr" --output "$out/$mode.png" --stats-json "$out/$mode.json"
 }
 start=$SECONDS
-render surface --clip-boundary exact --clip-softness 2
+render surface
 say "First image: $out/surface.png"
 render none
 render plane --plane=0,10,-5,0,0.91,-0.41
-render cutaway --clip-softness 2
+render cutaway
 say "Rendering took $((SECONDS - start)) s"
 
 montage -font DejaVu-Sans -pointsize 18 -geometry +6+6 -background '#181818' -fill white \
