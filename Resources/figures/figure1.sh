@@ -25,15 +25,15 @@ make_phantom knee
 make_phantom foot
 knee=("$out/knee/knee.nrrd" --segmentation "$out/knee/knee.seg.nrrd" --focus "Femoral cartilage" --transfer mr-knee
   --position=-15,200,-90)
-foot=("$out/foot/foot.mrml" --focus bones --transfer ct-skeleton --view superior)
+foot=("$out/foot/foot.mrml" --focus bones --view superior --background dark)
 render figure1-none "${knee[@]}" --paper --clip none
 render figure1-plane "${knee[@]}" --paper --clip plane --plane=0,10,-5,0,0.91,-0.41
 render figure1-cutaway "${knee[@]}" --paper --clip cutaway
 render figure1-spline "${knee[@]}" --paper
 draw_outline figure1-points figure1-spline "${knee[@]}" --paper
-render figure1-foot "${foot[@]}" --paper
+render figure1-foot "${foot[@]}" --transfer ct-skeleton --paper
 render figure1-exact "${knee[@]}"
-render figure1-foot-exact "${foot[@]}"
+render figure1-foot-exact "${foot[@]}" --transfer ct-anatomy
 join_images figure1.jpg figure1-none "a  Whole" figure1-plane "b  Plane, by hand" figure1-cutaway "c  Cut-away" \
   figure1-spline "d  Clipping surface" figure1-points "e  Outline, control points" figure1-foot "f  Foot" \
   figure1-exact "g  As d, defaults" figure1-foot-exact "h  As f, defaults"

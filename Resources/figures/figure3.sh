@@ -61,7 +61,7 @@ conditions of the paper; those of `exact` differ in `--clip-boundary exact` alon
 END
 for mm in 1 512; do
   make_phantom cube "cube-$mm" --edge "$mm"
-  cube=("$out/cube-$mm/cube.mrml" --focus Focus --paper)
+  cube=("$out/cube-$mm/cube.mrml" --focus Focus --paper --background dark)
   render "cube$mm-plane" "${cube[@]}" --clip plane
   render "cube$mm-cutaway" "${cube[@]}" --clip cutaway
   render "cube$mm-spline" "${cube[@]}"

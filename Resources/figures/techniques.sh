@@ -57,5 +57,5 @@ else
   printf '\n**Liver**: SKIPPED: FENESTRA_DATA has no torso_ct_ccth_a01.\n' >>"$page"
 fi
 make_phantom cube cube256 --size 256 --edge 512
-compare_techniques cube "Cube of 512 mm (the paper's model)" "$out/cube256/cube.mrml" --focus Focus --paper
+compare_techniques cube "Cube of 512 mm (the paper's model)" "$out/cube256/cube.mrml" --focus Focus --paper --background dark
 write_section techniques
