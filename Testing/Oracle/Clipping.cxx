@@ -295,9 +295,11 @@ double Clipping::silhouetteSurface(const DepthClip::SilhouetteCell& cell, const 
   };
   const DepthHit hit =
       searchRay(*m_focus, m_medium, ray, {std::max(0.0, lengthTo(cell.min)), infinity});
-  if (hit.height < 0.5)
+  const double fraction = std::clamp((hit.height - 0.45) / 0.05, 0.0, 1.0);
+  if (fraction == 0.0)
     return linearDepth;
-  return std::min(m_view.depth(ray.at(hit.t)) + clip.offset, cell.max);
+  const double depth = m_view.depth(ray.at(hit.t)) + clip.offset;
+  return linearDepth + fraction * (std::min(depth, cell.max) - linearDepth);
 }
 
 double Clipping::clipWeight(const Vec3& world) const {

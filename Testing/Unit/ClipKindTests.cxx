@@ -235,7 +235,7 @@ TEST(BoundaryMetrics, AreZeroOnAPlanarFocus) {
     const BoundaryMetrics metrics =
         measureBoundary(surface.clip, model.volume, model.focus, surface.focus);
     EXPECT_LT(metrics.gap.max, 0.5) << "the cuboid's edges are rounded by half a voxel";
-    EXPECT_LT(metrics.gap.mean, boundary == Boundary::exact ? 0.25 : 0.4);
+    EXPECT_LT(metrics.gap.mean, boundary == Boundary::exact ? 0.15 : 0.4);
     EXPECT_LT(metrics.slopeJump.mean, 0.5);
   }
 }

@@ -127,6 +127,10 @@ double averageNearMedian(std::vector<WeightedDepth> depths, double limit) {
   return middle->depth + sum / weights;
 }
 
+/// Ray maximum at which the surface begins to leave the interpolated depth for that of the focus,
+/// which it has at 1/2: a tenth of a voxel or of the smoothing beside the outline.
+constexpr double blendStart = 0.45;
+
 /// Queries that are traced together.
 struct QueryBatch {
   std::size_t size = 0;
@@ -263,11 +267,13 @@ void SilhouetteCells::evaluate(std::span<Query> queries) const {
       inner.queries[i]->depth = inner.results[i].depth - toFocus;
     else
       addToRest(*inner.queries[i]);
-  m_tracer->findHits(rest.depthQueries(), rest.hits());
+  m_tracer->findHitsAndMaxima(rest.depthQueries(), rest.hits());
   for (std::size_t i = 0; i < rest.size; ++i)
-    if (const DepthHit& hit = rest.results[i]; hit.indicator > 0.0) {
+    if (const DepthHit& hit = rest.results[i]; hit.indicator > blendStart) {
       Query& query = *rest.queries[i];
-      query.depth = std::min(hit.depth, findBounds(query).end) - toFocus;
+      const double depth = std::min(hit.depth, findBounds(query).end) - toFocus;
+      const double blend = (hit.indicator - blendStart) / (0.5 - blendStart);
+      query.depth += blend * (depth - query.depth);
     }
 }
 

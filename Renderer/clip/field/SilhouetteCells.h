@@ -7,13 +7,13 @@
 // - If the ray hits the focus, the surface is there.
 // - If it misses, the surface is the interpolated depth of the buffer. There, the focus samples at
 //   the outline have the depth of the surface beside them (ClippingSurface.cxx), so that it does
-//   not rise toward the focus.
+//   not rise toward the focus. Only in a narrow strip along the outline, where the ray maximum is
+//   nearly 1/2, it blends linearly into the depth of the ray maximum, so that it has no step.
 // Halo samples lie beside the focus and have a ray maximum (FocusCells). At the outline this is the
 // edge of the focus. The fill starts at the halo, so that the surface leaves the focus at its
 // outline, not at the last focus sample. Ray maxima lie near planes of voxels, and jump from one to
 // another along the outline; the surface would have notches and pleats. The depth of a halo sample
-// is therefore their mean along the outline. The surface may then have a step at the outline, where
-// the focus is nearly parallel to the ray.
+// is therefore their mean along the outline.
 //
 //   row of samples, camera above               indicator along a ray that barely misses
 //    context   halo    focus                     1/2 - - - - - - - - - - -
@@ -58,7 +58,7 @@ public:
       return {std::min(a.min, b.min), std::max(a.max, b.max)};
     }
   };
-  /// Per silhouette cell: bounds of the depths of hits.
+  /// Per silhouette cell: bounds of the depths of hits and ray maxima.
   const std::vector<DepthBounds>& depthBounds() const { return m_depthBounds; }
   /// Depth bounds of the cell whose top-left sample is `sample`; null if it is no silhouette cell.
   const DepthBounds* findDepthBounds(std::int64_t sample) const {
