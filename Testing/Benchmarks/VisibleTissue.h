@@ -34,8 +34,8 @@ TissueRegions findTissueRegions(const PreparedScene& scene, const VisibleSurface
 /// Foreign tissue at the surface of a focus (A8): fraction of the surface 1 mm inside which the
 /// volume is farther than 3.5 s from the median of the focus; both from the voxels at least 8 mm
 /// deep, s is 1.4826 times their median absolute deviation, at least 10 HU: smoothing of the volume
-/// leaves less noise than an organ varies by itself. Empty: fewer than 200 such voxels, or s over 60
-/// HU, so that the focus is not one tissue.
+/// leaves less noise than an organ varies by itself. Empty: fewer than 200 such voxels, or s over
+/// 60 HU, so that the focus is not one tissue.
 std::optional<double> measureForeignSurface(const Volume& volume, const Mask& focus);
 
 } // namespace fenestra::benchmarks

@@ -64,8 +64,7 @@ public:
                              scene.style, neverStopped, scene.mixture)
                      .medium()),
         m_shading(scene.volume.grid, scene.transfer, scene.lights, 0, true, scene.tint,
-                  scene.mixture) {
-  }
+                  scene.mixture) {}
 
   void integrateHits(std::span<const RasterPoint> points, PrimaryHit* out) const {
     const auto batch = std::make_unique<MarchBatch>();
