@@ -100,12 +100,7 @@ std::uint64_t computeKey(const Volume& volume, const SmoothingRequest& request, 
 /// Result that another row of the batch has stored; nullopt: none.
 std::optional<SmoothedVolume> readResult(const SharedSlot& slot, std::uint64_t key,
                                          const Volume& volume, Modality modality) {
-  Volume smoothed{.grid = volume.grid,
-                  .voxels = {},
-                  .name = volume.name,
-                  .warnings = volume.warnings,
-                  .modality = volume.modality,
-                  .hasContrastAgent = volume.hasContrastAgent};
+  Volume smoothed = copyWithoutVoxels(volume);
   const auto numbers = std::visit(
       [&]<typename Array>(const Array& voxels) {
         return slot.read(key, bytesOf(smoothed.voxels.emplace<Array>(voxels.size())));

@@ -194,18 +194,22 @@ LargeArray<Voxel> filterVoxels(const Volume& volume, const LargeArray<Voxel>& vo
 
 } // namespace
 
+Volume copyWithoutVoxels(const Volume& volume) {
+  return {.grid = volume.grid,
+          .voxels = {},
+          .name = volume.name,
+          .warnings = volume.warnings,
+          .modality = volume.modality,
+          .hasContrastAgent = volume.hasContrastAgent};
+}
+
 Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter) {
   constexpr double leastStrength = 1e-12; // of the range: squares of differences stay finite
   const double range = filter.isLogarithmic ? std::log1p(volume.maximum - volume.minimum)
                                             : volume.maximum - volume.minimum;
   if (!(filter.strength > leastStrength * range) || range == 0.0)
     return volume;
-  Volume result{.grid = volume.grid,
-                .voxels = {},
-                .name = volume.name,
-                .warnings = volume.warnings,
-                .modality = volume.modality,
-                .hasContrastAgent = volume.hasContrastAgent};
+  Volume result = copyWithoutVoxels(volume);
   std::visit([&](const auto& voxels) { result.voxels = filterVoxels(volume, voxels, filter); },
              volume.voxels);
   computeRange(result);
