@@ -217,7 +217,7 @@ struct RenderOptionTable {
        ValueSpec::texts().bind(scene.materialChanges, readTexts), OverrideGroup::materials},
       {"lights", "FILE|PRESET|JSON", appearanceGroup,
        "Lights: theatre-wet (with highlights), theatre, cinema, studio, headlight, soft, amber, a "
-       ".json file, or inline JSON, {...}",
+       ".json file, or inline JSON, {...} [theatre-wet with a focus, else theatre]",
        ValueSpec::text().bind(scene.lights).withNamedValues(listBuiltinPresets("lights")),
        OverrideGroup::lights},
       {"environment", "R,G,B|GRAY|FILE", appearanceGroup,

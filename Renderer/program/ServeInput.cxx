@@ -107,7 +107,7 @@ void checkChange(const json& change, const OptionValues& values, const Input& in
   const RenderRequest scene = makeRenderOptions(mergePreset(values, input)).scene;
   const bool isPreset = change.contains("preset"); // may set lights and a transfer function
   if (isPreset || change.contains("lights"))
-    findLights(scene.lights);
+    findLights(scene.lightsName());
   if (scene.transfer && (isPreset || change.contains("transfer")))
     findTransfer(*scene.transfer, input);
   if (scene.materials && (isPreset || change.contains("materials")))

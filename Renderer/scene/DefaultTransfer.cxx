@@ -24,6 +24,12 @@ std::vector<SegmentInfo> findSegments(const SegmentPatterns& patterns,
   return findFocusSegments(patterns, present);
 }
 
+/// Values of air in MR are below it.
+double findHighestAir(const std::array<double, 2>& robustRange) {
+  const auto [low, high] = robustRange;
+  return low + 0.06 * (high - low);
+}
+
 /// One step of Lloyd's algorithm: the mean of the sorted values that are nearest to each center.
 /// A center without values stays.
 std::array<double, 3> moveCenters(const std::vector<double>& sorted,
@@ -39,6 +45,15 @@ std::array<double, 3> moveCenters(const std::vector<double>& sorted,
     from = to;
   }
   return moved;
+}
+
+/// True if many values are as low as those of air around a body.
+bool hasAir(const Volume& volume) {
+  constexpr double leastFraction = 0.1;
+  const std::vector<double> values = sampleValues(volume);
+  const double highest = findHighestAir(findRobustRange(volume));
+  const auto count = std::ranges::count_if(values, [=](double value) { return value < highest; });
+  return static_cast<double>(count) >= leastFraction * static_cast<double>(values.size());
 }
 
 } // namespace
@@ -62,6 +77,9 @@ ScanContent describeScan(const Volume& volume, const Segmentation& segmentation,
         content.blood = std::max(content.blood.value_or(-infinity), findMedian(values));
     return content;
   }
+  static const SegmentPatterns kneePatterns = {.names = {"patell*", "menisc*", "cruciate*"},
+                                               .codes = {"SCT^64234005", "SCT^244564004"}};
+  content.isKnee = !findSegments(kneePatterns, segmentation, hasVoxels).empty();
   const auto brain = findSegments(findOrganPreset("brain-surface").focus, segmentation, hasVoxels);
   if (!brain.empty())
     content.brain = sampleValues(volume, segmentation.makeMask(brain, volume.grid));
@@ -82,8 +100,10 @@ std::optional<std::string> chooseTransferPreset(const Volume& volume, const Scan
   }
   if (volume.modality == Modality::us)
     return "us-fetal";
-  if (volume.modality == Modality::mr || !content.brain.empty())
-    return "mr-anatomy";
+  const bool isMr = volume.modality == Modality::mr || !content.brain.empty() ||
+                    (!volume.modality && hasAir(volume));
+  if (isMr)
+    return content.isKnee ? "mr-knee" : "mr-anatomy";
   return std::nullopt;
 }
 
@@ -101,11 +121,10 @@ TransferFunction fitToVolume(const TransferFile& transfer, const Volume& volume,
 }
 
 TissueScale findTissues(const Volume& volume, const std::vector<double>& brain) {
-  constexpr double background = 0.06;
-  const auto [low, high] = findRobustRange(volume);
+  const std::array<double, 2> range = findRobustRange(volume);
+  const auto [low, high] = range;
   std::vector<double> values = brain.empty() ? sampleValues(volume) : brain;
-  const double least = low + background * (high - low);
-  std::erase_if(values, [least](double value) { return value < least; });
+  std::erase_if(values, [least = findHighestAir(range)](double value) { return value < least; });
   std::ranges::sort(values);
   for (double& value : values) // bright outliers, such as fat and vessels
     value = std::min(value, high);

@@ -22,6 +22,7 @@ struct ScanContent {
   bool hasSegments = false;
   bool isLungFocus = false;         ///< all segments of the focus are of the lungs
   std::optional<double> blood = {}; ///< value of blood in the aorta or the heart
+  bool isKnee = false;              ///< of MR: parts of a knee are segmented
   std::vector<double> brain = {};   ///< values in the brain; empty: not segmented
 };
 
@@ -34,8 +35,9 @@ ScanContent describeScan(const Volume& volume, const Segmentation& segmentation,
 
 /// Name of the default preset; empty: makeRelativeTransfer().
 /// CT: ct-skin without segments, ct-lung for the lungs, ct-contrast if the file states a contrast
-/// agent or blood is above 130 HU (without agent it is below 90), else ct-anatomy. MR: mr-anatomy,
-/// if the file states the modality or the brain is segmented. Ultrasound: us-fetal.
+/// agent or blood is above 130 HU (without agent it is below 90), else ct-anatomy. MR: mr-knee for
+/// a knee, else mr-anatomy; also if the file states no modality and a tenth of the values are air.
+/// Ultrasound: us-fetal.
 std::optional<std::string> chooseTransferPreset(const Volume& volume, const ScanContent& content);
 
 /// Function for the volume's scalars; relative scalars are mapped to its robust range or to

@@ -44,7 +44,8 @@ PreparedScene PreparedScene::withRequest(const RenderRequest& request) const {
 void PreparedScene::prepare() {
   const RenderRequest& r = m_request;
   std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
-  const auto lights = m_namedLights.get(r.lights, r.environment, r.environmentMap); // fails early
+  const auto lights =
+      m_namedLights.get(r.lightsName(), r.environment, r.environmentMap); // fails early
   if (r.transfer)
     m_namedTransfer.get(*r.transfer, m_input);
   const auto raw = m_volume.get(m_input, r.volume);
@@ -206,7 +207,8 @@ std::vector<std::string> PreparedScene::choices() const {
   if (r.environment || r.environmentMap)
     facts.emplace_back("lights: environment");
   else
-    facts.push_back("lights: " + (r.lights.starts_with('{') ? "inline JSON" : r.lights));
+    facts.push_back("lights: " +
+                    (r.lights && r.lights->starts_with('{') ? "inline JSON" : r.lightsName()));
   if (m_segments.result() && !m_segments->segmentation.namesSource().empty())
     facts.push_back("names of segments: " + m_segments->segmentation.namesSource());
   for (const SegmentMargin& margin : margins())

@@ -7,6 +7,7 @@
 #include "model/masks/OrganMargin.h"
 #include "model/masks/OuterLayer.h"
 #include "scene/Defaults.h"
+#include "scene/OrganPresets.h"
 
 namespace fenestra {
 namespace {
@@ -185,26 +186,60 @@ NamedLights makeLights(const std::string& name, const std::optional<Rgb>& enviro
   return named;
 }
 
+namespace {
+
+/// Groups of segments that are adjacent, directly or by others of the group, in a stable order.
+std::vector<std::vector<SegmentInfo>> groupAdjacent(const Segmentation& segmentation,
+                                                    const std::vector<SegmentInfo>& segments,
+                                                    const Grid& volume) {
+  struct Group {
+    std::vector<SegmentInfo> segments;
+    std::vector<Mask> masks;
+  };
+  std::vector<Group> groups;
+  for (const SegmentInfo& segment : segments) {
+    Group joined{{segment}, {}};
+    joined.masks.push_back(segmentation.makeMask({segment}, volume));
+    std::erase_if(groups, [&](Group& group) {
+      const bool isAdjacent = std::ranges::any_of(
+          group.masks, [&](const Mask& mask) { return areAdjacent(mask, joined.masks.front()); });
+      if (isAdjacent) {
+        std::ranges::move(group.segments, std::back_inserter(joined.segments));
+        std::ranges::move(group.masks, std::back_inserter(joined.masks));
+      }
+      return isAdjacent;
+    });
+    groups.push_back(std::move(joined));
+  }
+  std::vector<std::vector<SegmentInfo>> result;
+  for (Group& group : groups)
+    result.push_back(std::move(group.segments));
+  return result;
+}
+
+} // namespace
+
 TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
                              const Handle<std::vector<bool>>& hasVoxels,
                              const std::vector<std::string>& names, const VolumeHandle& volume) {
   TrimmedSegments trimmed{segments, {}};
   std::shared_ptr<SegmentsInput> copy;
   const Segmentation& original = segments->segmentation;
-  for (const std::string& name : names) {
-    const std::size_t number = original.find(name);
-    if (!(*hasVoxels)[number])
-      continue;
-    const SegmentInfo& segment = original.segments()[number];
+  std::vector<SegmentInfo> present;
+  for (const std::string& name : names)
+    if (const std::size_t number = original.find(name); (*hasVoxels)[number])
+      present.push_back(original.segments()[number]);
+  for (const auto& group : groupAdjacent(original, present, volume->volume.grid)) {
     const OrganMargin margin =
-        findOrganMargin(original.makeMask({segment}, volume->volume.grid), volume->volume);
+        findOrganMargin(original.makeMask(group, volume->volume.grid), volume->volume);
     if (margin.volume > 0.0) {
       if (!copy)
         trimmed.input = copy = std::make_shared<SegmentsInput>(*segments);
-      copy->segmentation.restrictSegment(segment, margin.kept);
+      for (const SegmentInfo& segment : group)
+        copy->segmentation.restrictSegment(segment, margin.kept);
     }
     trimmed.margins.push_back(
-        {segment.name, margin.isApplied, margin.volume, margin.mean, margin.p95});
+        {joinSegmentNames(group), margin.isApplied, margin.volume, margin.mean, margin.p95});
   }
   return trimmed;
 }

@@ -33,7 +33,7 @@ NamedLights makeLights(const std::string& name, const std::optional<Rgb>& enviro
 
 /// Margin of a segment, as in OrganMargin.
 struct SegmentMargin {
-  std::string segment; ///< its name
+  std::string segment; ///< its name; for adjacent segments, several
   bool isApplied;
   double volume, mean, p95;
 };
@@ -41,7 +41,8 @@ struct TrimmedSegments {
   Handle<SegmentsInput> input;        ///< with the margins; the given one if nothing is removed
   std::vector<SegmentMargin> margins; ///< in the order of the names
 };
-/// Removes what belongs to other tissue from the segments `names` (OrganMargin.h). `hasVoxels`:
+/// Removes what belongs to other tissue from the segments `names` (OrganMargin.h). Adjacent
+/// segments are one organ: between true and false lumen, margins would open a gap. `hasVoxels`:
 /// from findNonEmpty(). The volume must be CT. Throws Error (input) for unknown names.
 TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
                              const Handle<std::vector<bool>>& hasVoxels,

@@ -84,7 +84,7 @@ Image renderByOracle(const RenderOptions& options, const PreparedScene& scene,
     throw inputError("scenes.txt", "requests an oracle reference for a clip; use product");
   const oracle::OracleScene subject{.volume = view.volume,
                                     .transfer = view.transfer,
-                                    .lights = readPresetLights(options.scene.lights),
+                                    .lights = readPresetLights(options.scene.lightsName()),
                                     .pose = view.camera.pose(),
                                     .width = view.camera.width(),
                                     .height = view.camera.height(),

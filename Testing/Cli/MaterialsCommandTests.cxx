@@ -116,7 +116,7 @@ TEST_F(MaterialsCommand, NeedNoFocusAndAreAFact) {
       makeArguments({"--materials", "library", "--output", "a.png", "--verbose"}), folder.path());
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "transfer function: by the volume's range\nvolume: not smoothed\n"
-                         "lights: theatre-wet\n"
+                         "lights: theatre\n"
                          "materials: library, 1 color\n");
 }
 

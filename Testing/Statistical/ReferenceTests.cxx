@@ -62,7 +62,7 @@ oracle::Estimates renderOracle(const ReferenceCase& c) {
   const PreparedScene scene(options.scene);
   return oracle::render({.volume = scene.volume(),
                          .transfer = scene.transfer(),
-                         .lights = readLights(options.scene.lights),
+                         .lights = readLights(options.scene.lightsName()),
                          .pose = scene.camera().pose(),
                          .width = scene.camera().width(),
                          .height = scene.camera().height(),

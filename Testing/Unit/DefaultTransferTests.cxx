@@ -42,6 +42,7 @@ TEST(DefaultTransfer, FollowsModalityContrastAgentAndSegments) {
       {Modality::mr, false, false, {}, "mr-anatomy"},
       {Modality::us, false, false, {}, "us-fetal"},
       {{}, false, false, {.hasSegments = true, .brain = {1.0}}, "mr-anatomy"},
+      {Modality::mr, false, false, {.hasSegments = true, .isKnee = true}, "mr-knee"},
       {{}, false, true, {.hasSegments = true}, std::nullopt},
       {{}, false, false, {}, std::nullopt},
   };
@@ -53,6 +54,13 @@ TEST(DefaultTransfer, FollowsModalityContrastAgentAndSegments) {
   }
   EXPECT_EQ(chooseTransferPreset(makeRamp(-8192, 3071), {}), "ct-skin") << "padded";
   EXPECT_FALSE(chooseTransferPreset(makeRamp(0, 4000), {}));
+  const auto makeBody = [](double air) {
+    return makeVolume<float>(makeCenteredGrid({40, 30, 20}, {2.0, 2.0, 2.0}), [=](const Vec3& p) {
+      return p.y() < air * 30.0 ? 3.0 : 200.0 + 20.0 * p.x();
+    });
+  };
+  EXPECT_EQ(chooseTransferPreset(makeBody(0.2), {}), "mr-anatomy") << "as NIfTI files of MR";
+  EXPECT_FALSE(chooseTransferPreset(makeBody(0.05), {})) << "no air";
 }
 
 /// A volume of blood, 45 HU, in segment 1 ("aorta_false_lumen"), and with contrast agent, 300 HU,
@@ -81,6 +89,9 @@ TEST(DefaultTransfer, BloodIsTheGreatestMedianOfAortaAndHeart) {
   const Segmentation others = makeSegments({"liver", "spleen", "lung_left", "bone"});
   EXPECT_FALSE(describeScan(volume, others, all, {"lung_left", "bone"}).isLungFocus);
   EXPECT_FALSE(describeScan(volume, others, all, {}).blood);
+  const Volume mr = makeVolume<std::int16_t>(grid, [](const Vec3& p) { return 10.0 * p.x(); });
+  EXPECT_TRUE(describeScan(mr, makeSegments({"patella", "a", "b", "c"}), all, {}).isKnee);
+  EXPECT_FALSE(describeScan(mr, others, all, {}).isKnee);
   const Segmentation empty = makeSegments({"liver", "aorta", "lung_left", "bone"});
   EXPECT_FALSE(describeScan(volume, empty, {true, false, true, true}, {}).blood);
 }

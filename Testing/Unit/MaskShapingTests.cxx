@@ -74,6 +74,20 @@ TEST(MaskShaping, UnionCountsVoxelsOfBothMasks) {
   EXPECT_EQ(uniteMasks({a, a}).count, a.count);
 }
 
+TEST(MaskShaping, AdjacentMasksHaveAVoxelOrAFaceInCommon) {
+  const Grid grid = makeCenteredGrid({41, 41, 41}); // voxels at whole numbers
+  const Mask a = makeBoxMask(grid, {-10, -10, -10}, {-5, -5, -5});
+  const auto isAdjacent = [&](const Vec3& lower, const Vec3& upper) {
+    const Mask b = makeBoxMask(grid, lower, upper);
+    EXPECT_EQ(areAdjacent(a, b), areAdjacent(b, a));
+    return areAdjacent(a, b);
+  };
+  EXPECT_TRUE(isAdjacent({-7, -7, -7}, {2, 2, 2}));
+  EXPECT_TRUE(isAdjacent({-4, -7, -7}, {2, 2, 2})) << "face";
+  EXPECT_FALSE(isAdjacent({-4, -4, -7}, {2, 2, 2})) << "edge";
+  EXPECT_FALSE(isAdjacent({-3, -7, -7}, {2, 2, 2})) << "one voxel apart";
+}
+
 /// Step height, mm: range of distances from the visible surface's center to a sphere of `radius`.
 double measureStepHeight(const Mask& mask, double radius) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 20, 128, 128);

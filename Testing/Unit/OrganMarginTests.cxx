@@ -164,8 +164,30 @@ TEST(OrganMargin, IsNotAppliedToSmallOrMixedSegments) {
   EXPECT_FALSE(findOrganMargin(mixed.label, mixed.volume).isApplied);
   Phantom airy = makePhantom(10.0);
   for (std::int16_t& voxel : std::get<LargeArray<std::int16_t>>(airy.volume.voxels))
-    voxel = static_cast<std::int16_t>(voxel - 900);
-  EXPECT_FALSE(findOrganMargin(airy.label, airy.volume).isApplied) << "lung";
+    voxel = static_cast<std::int16_t>(voxel - 200);
+  EXPECT_FALSE(findOrganMargin(airy.label, airy.volume).isApplied) << "fat";
+}
+
+/// The phantom as a lung at -800 HU, on its side of `fat` in soft tissue.
+Phantom makeLung(double noise, const std::optional<Lesion>& lesion = {}) {
+  Phantom phantom = makePhantom(noise / 4.0, lesion);
+  for (std::int16_t& voxel : std::get<LargeArray<std::int16_t>>(phantom.volume.voxels))
+    voxel = static_cast<std::int16_t>(-800.0 + 4.0 * (organ - voxel));
+  computeRange(phantom.volume);
+  return phantom;
+}
+
+TEST(OrganMargin, RemovesTheChestWallFromLungsAndPreservesNodules) {
+  for (const double noise : {20.0, 60.0}) {
+    const Phantom phantom = makeLung(noise);
+    const OrganMargin margin = findOrganMargin(phantom.label, phantom.volume);
+    ASSERT_TRUE(margin.isApplied) << noise;
+    EXPECT_LT(computeForeignSurface(margin.kept), 0.05) << noise;
+    for (const double depth : {0.0, 5.0, 7.0}) {
+      const Lesion nodule{{radii.x() - depth, 0.0, -4.0}, 10.0, organ - 210.0}; // 40 HU
+      EXPECT_LE(computeLoss(makeLung(noise, nodule), nodule), 0.05) << depth << " " << noise;
+    }
+  }
 }
 
 /// Requests of the phantom in files.
@@ -192,6 +214,10 @@ protected:
     voxels[1] = -1000;
     writeFile(folder / "uniform.nrrd", voxels, geometry);
     writeFile(folder / "labels.nrrd", phantom.label.voxels, geometry);
+    std::vector<std::uint8_t> halves = phantom.label.voxels;
+    for (std::size_t i = halves.size() / 2; i < halves.size(); ++i)
+      halves[i] = static_cast<std::uint8_t>(2 * halves[i]);
+    writeFile(folder / "halves.nrrd", halves, geometry);
     count = phantom.label.count;
     request.input = folder / "ct.nrrd";
     request.segmentation = folder / "labels.nrrd";
@@ -253,6 +279,18 @@ TEST_F(OrganMarginScene, SharesSegmentsThatItDoesNotTrim) {
   EXPECT_EQ(scene.focus()->count, count);
   request.focusStyle.hasOrganMargin = false;
   EXPECT_FALSE(scene.withRequest(request).updatedStages().focus);
+}
+
+/// Halves of one organ get its margin: they stay in contact.
+TEST_F(OrganMarginScene, AdjacentSegmentsAreOneOrgan) {
+  const PreparedScene whole(request);
+  request.segmentation = folder / "halves.nrrd";
+  request.materialChanges.clear();
+  request.focus = {"1", "2"};
+  const PreparedScene halves(request);
+  ASSERT_EQ(halves.margins().size(), 1U);
+  EXPECT_EQ(halves.margins()[0].volume, whole.margins()[0].volume);
+  EXPECT_EQ(halves.focus()->count, whole.focus()->count);
 }
 
 TEST_F(OrganMarginScene, OnlyForCt) {

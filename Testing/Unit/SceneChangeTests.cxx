@@ -267,7 +267,7 @@ TEST_F(SceneChange, NewCameraDoesNotUpdateLightsInWorldFrame) {
 TEST_F(SceneChange, InlineLightsEqualLightsFromFile) {
   request.lights = folder / "lamp.json";
   const PreparedScene file(request);
-  request.lights = readBytes(request.lights);
+  request.lights = readBytes(*request.lights);
   const PreparedScene text(request);
   const Film expected = renderFilm(file), film = renderFilm(text);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)

@@ -186,12 +186,6 @@ private:
   std::vector<LabelValueSet<Label>> m_values; ///< selected values of each layer
 };
 
-/// True if the voxel of the mask's grid is inside the grid and the mask.
-bool containsVoxel(const Mask& mask, const Size3& voxel) {
-  return (voxel.array() >= 0).all() && (voxel.array() < mask.grid.size.array()).all() &&
-         mask.voxels[linearIndex(voxel, mask.grid.size)] >= mask.threshold();
-}
-
 // ---- statistics
 
 struct ValueStatistics {
@@ -342,7 +336,7 @@ void Segmentation::restrictSegment(const SegmentInfo& segment, const Mask& mask)
         for (std::int64_t x = 0; x < m_grid.size.x(); ++x) {
           const std::size_t voxel = linearIndex({x, y, z}, m_grid.size);
           auto& label = labels[voxel * m_layerCount + segment.layer];
-          if (label == segment.labelValue && !containsVoxel(mask, Size3(x, y, z) - origin))
+          if (label == segment.labelValue && !mask.contains(Size3(x, y, z) - origin))
             label = 0;
         }
     });

@@ -8,6 +8,7 @@
 #include <itkSmoothingRecursiveGaussianImageFilter.h>
 
 #include <algorithm>
+#include <array>
 
 namespace fenestra {
 namespace {
@@ -115,6 +116,24 @@ Mask applyMargin(Mask mask, double margin, const Grid& volume) {
 Size3 findOffset(const Mask& mask, const Mask& other) {
   const Vec3 offset = other.grid.worldToIndex * mask.grid.indexToWorld.translation();
   return offset.array().round().cast<std::int64_t>();
+}
+
+bool areAdjacent(const Mask& a, const Mask& b) {
+  const Size3 offset = findOffset(a, b), one = Size3::Ones();
+  const Size3 first = (-offset - one).cwiseMax(0);
+  const Size3 end = (b.grid.size - offset + one).cwiseMin(a.grid.size);
+  for (std::int64_t z = first.z(); z < end.z(); ++z)
+    for (std::int64_t y = first.y(); y < end.y(); ++y)
+      for (std::int64_t x = first.x(); x < end.x(); ++x) {
+        const Size3 voxel(x, y, z), other = voxel + offset;
+        if (a.contains(voxel) &&
+            (b.contains(other) || std::ranges::any_of(std::array{0, 1, 2}, [&](int axis) {
+               return b.contains(other - Size3::Unit(axis)) ||
+                      b.contains(other + Size3::Unit(axis));
+             })))
+          return true;
+      }
+  return false;
 }
 
 Mask uniteMasks(std::vector<Mask> masks) {

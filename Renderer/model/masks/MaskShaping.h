@@ -31,6 +31,9 @@ Mask applyMargin(Mask mask, double margin, const Grid& volume);
 /// Voxel of `other` where a mask on the same lattice begins.
 Size3 findOffset(const Mask& mask, const Mask& other);
 
+/// True if masks on the same lattice have a voxel, or a face of voxels, in common.
+bool areAdjacent(const Mask& a, const Mask& b);
+
 /// Union of one or more masks on the same label map's lattice.
 Mask uniteMasks(std::vector<Mask> masks);
 

@@ -11,18 +11,20 @@
 namespace fenestra {
 namespace {
 
-constexpr double deep = 8.0;             ///< mm below the surface, where voxels are surely organ
-constexpr std::size_t fewestDeep = 500;  ///< voxels, for a robust standard deviation
-constexpr double maxDeviation = 60.0;    ///< HU, of one tissue
-constexpr float maxDepth = 6.0F;         ///< mm below the surface, of removed voxels
-constexpr double maxRemoved = 1.0 / 3.0; ///< fraction of the voxels; more: not this organ's label
-constexpr double deviations = 3.5;       ///< robust standard deviations that belong to the tissue
-constexpr double leastDifference = 25.0; ///< HU; differences within an organ
-constexpr double tested = 1.0;           ///< mm below the new surface, where it must be organ
+constexpr double deep = 8.0;              ///< mm below the surface, where voxels are surely organ
+constexpr std::size_t fewestDeep = 500;   ///< voxels, for a robust standard deviation
+constexpr double maxDeviation = 60.0;     ///< HU, of one tissue
+constexpr double maxAirDeviation = 120.0; ///< HU, of lung: more blood lies in its lower parts
+constexpr float maxDepth = 6.0F;          ///< mm below the surface, of removed voxels
+constexpr double maxRemoved = 1.0 / 3.0;  ///< fraction of the voxels; more: not this organ's label
+constexpr double deviations = 3.5;        ///< robust standard deviations that belong to the tissue
+constexpr double leastDifference = 25.0;  ///< HU; differences within an organ
+constexpr double tested = 1.0;            ///< mm below the new surface, where it must be organ
 /// Lesions: radius, mm, of a ball that fits in, and the rim around it.
 constexpr double lesionRadius = 1.25, fatRadius = 4.0, lesionRim = 3.0;
-constexpr float leastSoft = -30.0F;    ///< HU; fat, lung and air are below
-constexpr double lesionFraction = 0.6; ///< of the range: partial volume around a lesion
+constexpr float leastSoft = -30.0F;     ///< HU; fat, lung and air are below
+constexpr double greatestLung = -500.0; ///< HU
+constexpr double lesionFraction = 0.6;  ///< of the range: partial volume around a lesion
 /// Centers of balls in lesions across the surface: volume, mm^3, to exclude noise; fraction inside;
 /// extent, mm. Neighboring organs have less than 0.05 inside; sheets extend farther, and larger
 /// lesions are thick inside, too.
@@ -189,7 +191,10 @@ public:
     if (deepValues.size() < fewestDeep)
       return {};
     const TissueRange values(deepValues), medians(selectDeep(m_medians));
-    if (!(values.deviation <= maxDeviation && values.median > static_cast<double>(leastSoft)))
+    const bool isSoft = values.median > static_cast<double>(leastSoft);
+    const bool isLung = values.median < greatestLung;
+    if (!(isSoft && values.deviation <= maxDeviation) &&
+        !(isLung && values.deviation <= maxAirDeviation))
       return {};
     const Marks lesions = findLesions(values, medians);
     Marks removed(m_inside.size());

@@ -23,9 +23,9 @@ struct OrganMargin {
 /// thicker than 2.5 mm plus a voxel, and any other tissue thicker than 8 mm plus a voxel. The
 /// former may reach beyond the mask if at least a third is inside and they are no larger than 20 mm
 /// (neighboring organs have a few percent inside).
-/// Applies only if at least 500 voxels are deeper than 8 mm, with a median above -30 HU (not lung)
-/// and a robust standard deviation of at most 60 HU. `volume`: CT, with or without noise. Time and
-/// memory grow with the mask's grid.
+/// Applies only if at least 500 voxels are deeper than 8 mm, and their median is above -30 HU with
+/// a robust standard deviation of at most 60 HU, or below -500 HU (lung) with at most 120 HU.
+/// `volume`: CT, with or without noise. Time and memory grow with the mask's grid.
 OrganMargin findOrganMargin(const Mask& segment, const Volume& volume);
 
 } // namespace fenestra

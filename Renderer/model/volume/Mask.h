@@ -30,6 +30,12 @@ struct Mask {
         voxels, [half = threshold()](std::uint8_t voxel) { return voxel >= half; });
   }
 
+  /// True if the voxel is in the grid and inside the surface.
+  bool contains(const Size3& voxel) const {
+    return (voxel.array() >= 0).all() && (voxel.array() < grid.size.array()).all() &&
+           voxels[linearIndex(voxel, grid.size)] >= threshold();
+  }
+
   /// Smallest voxel value inside the surface: maxValue / 2, rounded up.
   std::uint8_t threshold() const { return static_cast<std::uint8_t>(maxValue - maxValue / 2); }
 };
