@@ -35,7 +35,7 @@ protected:
       const auto& now = image.channels.at(name);
       ASSERT_EQ(now.size(), plane.size());
       for (std::size_t i = 0; i < plane.size(); ++i) {
-        EXPECT_NEAR(now[i], plane[i], 1e-4 * (1.0 + std::abs(plane[i]))) << name << ' ' << i;
+        ASSERT_NEAR(now[i], plane[i], 1e-4 * (1.0 + std::abs(plane[i]))) << name << ' ' << i;
         sum += std::abs(plane[i]);
       }
     }

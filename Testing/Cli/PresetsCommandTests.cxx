@@ -127,7 +127,7 @@ TEST(PresetsCommand, TransferFunctionForAnotherModalityIsReplacedWithAWarning) {
   const Outcome outcome = renderKnee(addSegments({"--preset", "ct.json", "--focus", "Femur"}));
   EXPECT_EQ(outcome.status, 0);
   EXPECT_TRUE(outcome.err.starts_with("fenestra: warning: ct-anatomy: ")) << outcome.err;
-  EXPECT_EQ(readResult().header.at("look"), "mr-anatomy");
+  EXPECT_EQ(readResult().header.at("look"), "mr-knee");
   EXPECT_EQ(
       renderKnee(addSegments({"--preset", "ct.json", "--focus", "Femur", "--transfer", "mr-knee"}))
           .err,
