@@ -53,7 +53,7 @@ TEST(NiftiHeader, AxisOrderAndDirectionDoNotChangeVolume) {
         std::int16_t qform, sform;
         const Affine &qformMap, &sformMap;
       } const cases[] = {{0, 2, elsewhere, map}, {1, 0, map, elsewhere}, {1, 1, map, map},
-                         {2, 2, map, map},       {1, 2, map, elsewhere}, {2, 1, elsewhere, map}};
+                         {2, 2, map, map},       {1, 2, elsewhere, map}, {2, 1, elsewhere, map}};
       for (const auto& test : cases) {
         const std::array<float, 4> pixdim = file.pixdim;
         file.setQform(test.qformMap);
@@ -62,9 +62,10 @@ TEST(NiftiHeader, AxisOrderAndDirectionDoNotChangeVolume) {
         file.setSform(test.sformMap);
         file.qformCode = test.qform;
         file.sformCode = test.sform;
-        EXPECT_TRUE(isReference(readVolume(folder.write("v.nii", file.bytes()))))
-            << order[0] << order[1] << order[2] << " reversed " << reversed << " codes "
-            << test.qform << test.sform;
+        const Volume volume = readVolume(folder.write("v.nii", file.bytes()));
+        EXPECT_EQ(volume.warnings.size(), test.qform > 0 && &test.qformMap == &elsewhere ? 1U : 0U);
+        EXPECT_TRUE(isReference(volume)) << order[0] << order[1] << order[2] << " reversed "
+                                         << reversed << " codes " << test.qform << test.sform;
       }
     }
   } while (std::next_permutation(order.begin(), order.end()));
@@ -106,6 +107,20 @@ TEST(NiftiHeader, ShearedSformIsRefused) {
   file.rows = {};
   const auto flat = folder.write("v.nii", file.bytes());
   expectRefused(flat, "invalid-field: srow", [&] { readVolume(flat); });
+}
+
+/// As converters write gantry tilt beside an upright qform.
+TEST(NiftiHeader, QformReplacesAShearedSformWithAWarning) {
+  const TemporaryFolder folder;
+  NiftiFile file;
+  file.qformCode = file.sformCode = 1;
+  file.rows[1] = 0.3f;
+  const Volume volume = readVolume(folder.write("v.nii", file.bytes()));
+  EXPECT_EQ(volume.grid.indexToWorld.linear(), Mat3(Mat3::Identity()));
+  ASSERT_EQ(volume.warnings.size(), 1U);
+  expectMessage(volume.warnings[0], "assumed-geometry");
+  file.rows[1] = 0.1f; // three voxels apart from the first: 0.3 mm at the corner
+  EXPECT_TRUE(readVolume(folder.write("v.nii", file.bytes())).warnings.empty());
 }
 
 TEST(NiftiHeader, UnitsScaleGeometry) {

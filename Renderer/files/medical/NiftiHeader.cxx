@@ -99,19 +99,36 @@ Mat3 findNearestOrthogonal(Mat3 matrix) {
   return matrix;
 }
 
-Affine readSform(const NiftiFields& fields, const Vec3& pixdim) {
-  const Mat3 linear = Mat3::FromRows(fields.triple(280), fields.triple(296), fields.triple(312));
+/// Rows of the sform without the offset.
+Mat3 readSformAxes(const NiftiFields& fields) {
+  return Mat3::FromRows(fields.triple(280), fields.triple(296), fields.triple(312));
+}
+
+/// Largest distance of a unit axis from the nearest right-angled one; infinity: the axes are
+/// linearly dependent.
+double measureShear(const Mat3& linear) {
+  constexpr double minDeterminant = 1e-6;
   const Mat3 axes = linear.normalizedColumns();
-  constexpr double minDeterminant = 1e-6, maxDeviation = 1e-3;
   if (!(std::abs(axes.determinant()) > minDeterminant))
-    throw fieldError(fields.path(), "srow", "the axes are linearly dependent; fix the header");
+    return infinity;
   const Mat3 nearest = findNearestOrthogonal(axes);
-  double deviation = 0.0;
+  double shear = 0.0;
   for (int column = 0; column < 3; ++column)
-    deviation = std::max(deviation, (axes.col(column) - nearest.col(column)).norm());
-  if (!(deviation < maxDeviation))
-    throw fieldError(fields.path(), "srow", "is sheared by ", toString(deviation, 2),
+    shear = std::max(shear, (axes.col(column) - nearest.col(column)).norm());
+  return shear;
+}
+
+constexpr double mostShear = 1e-3; // rounding
+
+Affine readSform(const NiftiFields& fields, const Vec3& pixdim) {
+  const Mat3 linear = readSformAxes(fields);
+  const double shear = measureShear(linear);
+  if (shear == infinity)
+    throw fieldError(fields.path(), "srow", "the axes are linearly dependent; fix the header");
+  if (!(shear < mostShear))
+    throw fieldError(fields.path(), "srow", "is sheared by ", toString(shear, 2),
                      " of an axis; resample the image onto orthogonal axes");
+  const Mat3 nearest = findNearestOrthogonal(linear.normalizedColumns());
   // If pixdim agrees, it states the spacing without the rounding of the rows.
   Vec3 spacing = linear.columnNorms();
   for (int axis = 0; axis < 3; ++axis)
@@ -145,9 +162,38 @@ double readUnitMm(const NiftiFields& fields) {
   return code == 1 ? 1000.0 : code == 3 ? 0.001 : 1.0;
 }
 
+/// Largest distance between the positions of a corner of the image in both forms, in the units of
+/// the header. The sform may be sheared.
+double measureDisagreement(const NiftiFields& fields, const Affine& qform) {
+  const Affine sform(readSformAxes(fields), {fields.real(292), fields.real(308), fields.real(324)});
+  Vec3 last = Vec3::Zero();
+  const std::vector<std::int64_t> size = readNiftiSize(fields);
+  for (std::size_t axis = 0; axis < std::min<std::size_t>(size.size(), 3); ++axis)
+    last[static_cast<int>(axis)] = static_cast<double>(size[axis]) - 1.0;
+  double most = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 voxel((corner & 1) * last[0], (corner >> 1 & 1) * last[1], (corner >> 2) * last[2]);
+    most = std::max(most, (sform * voxel - qform * voxel).norm());
+  }
+  return most;
+}
+
+/// The form that places the image if both are given: the sform, unless it is sheared. Warns if they
+/// disagree by more than half a voxel.
+Affine chooseForm(const NiftiFields& fields, const Vec3& pixdim, std::vector<Message>& warnings) {
+  const Affine qform = readQform(fields, pixdim);
+  const bool isSheared = !(measureShear(readSformAxes(fields)) < mostShear);
+  if (const double apart = measureDisagreement(fields, qform); apart > 0.5 * pixdim.minCoeff())
+    warnings.push_back(makeMessage(
+        ErrorCode::assumedGeometry, fields.path(), "qform and sform place its corners up to ",
+        toString(apart * readUnitMm(fields), 3), " mm apart; the ",
+        isSheared ? "qform is used, since the sform is sheared: the image may be distorted"
+                  : "sform is used, as in FSL, SPM and nibabel (3D Slicer uses the qform)"));
+  return isSheared ? qform : readSform(fields, pixdim);
+}
+
 Affine readNiftiGeometry(const NiftiFields& fields, std::vector<Message>& warnings) {
   const auto qform = fields.number<std::int16_t>(252), sform = fields.number<std::int16_t>(254);
-  const bool usesSform = sform > 0 && (sform == 1 || qform <= 0);
   // pixdim, quaternion and offset, rows of the sform
   if (!fields.hasFiniteNumbers(76, 4) || (qform > 0 && !fields.hasFiniteNumbers(256, 6)) ||
       (sform > 0 && !fields.hasFiniteNumbers(280, 12)))
@@ -158,7 +204,9 @@ Affine readNiftiGeometry(const NiftiFields& fields, std::vector<Message>& warnin
   for (int axis = 0; axis < 3; ++axis)
     pixdim[axis] = pixdim[axis] == 0.0 ? 1.0 : std::abs(pixdim[axis]);
   Affine map(lpsToRas * Mat3::Diagonal(pixdim));
-  if (usesSform)
+  if (qform > 0 && sform > 0)
+    map = chooseForm(fields, pixdim, warnings);
+  else if (sform > 0)
     map = readSform(fields, pixdim);
   else if (qform > 0)
     map = readQform(fields, pixdim);
