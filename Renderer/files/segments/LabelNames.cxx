@@ -11,6 +11,7 @@
 #include <pugixml.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <functional>
 
 namespace fenestra {
@@ -97,43 +98,109 @@ void readSnapTable(const std::string& text, TableBuilder& table) {
   });
 }
 
-void readCsv(const std::string& text, TableBuilder& table) {
-  std::size_t value = 0, name = 1;
-  bool isFirst = true;
-  for (CsvRecord& record : parseCsv(text, table.source())) {
-    std::vector<std::string>& fields = record.fields;
-    const std::string place = concat("line ", record.line);
-    for (std::string& field : fields)
-      field = trim(field, " \t\"");
-    if (fields[0].starts_with('#'))
-      continue;
-    const auto findColumn = [&](std::initializer_list<std::string_view> titles) {
-      return static_cast<std::size_t>(
-          std::ranges::find_if(fields,
-                               [&](const std::string& field) {
-                                 return std::ranges::find(titles, toLower(field)) != titles.end();
-                               }) -
-          fields.begin());
-    };
-    if (std::exchange(isFirst, false) && !parseInteger(fields[0])) {
-      value = findColumn({"label", "value", "id", "index", "labelvalue"});
-      name = findColumn({"name", "label_name", "labelname", "structure", "segment"});
-      if (value >= fields.size() || name >= fields.size())
-        throw fieldError(table.source(), place,
-                         "has no columns \"label\" and \"name\"; rename the columns");
-      continue;
-    }
-    const auto field = [&](std::size_t i) { return i < fields.size() ? fields[i] : std::string(); };
-    table.add(place, parseInteger(field(value)), field(name));
+/// Color "#rrggbb"; nullopt: malformed.
+std::optional<Rgb> parseHexColor(std::string_view text) {
+  if (text.size() != 7 || text.front() != '#')
+    return std::nullopt;
+  Rgb color;
+  for (int i = 0; i < 3; ++i) {
+    unsigned byte = 0;
+    const char* const first = text.data() + 1 + 2 * i;
+    if (std::from_chars(first, first + 2, byte, 16).ptr != first + 2)
+      return std::nullopt;
+    color[i] = byte / 255.0;
   }
+  return color;
+}
+
+/// Rows of a table whose first line may name its columns.
+class TableColumns {
+public:
+  /// True if the first row, with lower-case fields, is a line of titles.
+  bool readTitles(const std::string& source, const std::string& place,
+                  const std::vector<std::string>& titles) {
+    if (parseInteger(titles[0]))
+      return false;
+    const auto find = [&](std::initializer_list<std::string_view> names) {
+      return static_cast<std::size_t>(std::ranges::find_first_of(titles, names) - titles.begin());
+    };
+    m_value = find({"label", "value", "id", "index", "labelvalue"});
+    m_name = find({"name", "label_name", "labelname", "structure", "segment"});
+    m_color = find({"color", "color_r"});
+    if (m_value >= titles.size() || m_name >= titles.size())
+      throw fieldError(source, place, "has no columns \"label\" and \"name\"; rename the columns");
+    return true;
+  }
+
+  void addRow(const std::string& place, const std::vector<std::string>& fields,
+              TableBuilder& table) const {
+    const auto field = [&](std::size_t i) { return i < fields.size() ? fields[i] : std::string(); };
+    const auto hex = parseHexColor(field(m_color));
+    table.add(place, parseInteger(field(m_value)), field(m_name),
+              hex ? hex : parseColor(fields, m_color));
+  }
+
+private:
+  std::size_t m_value = 0, m_name = 1;
+  std::size_t m_color = std::string::npos; ///< hexadecimal, or the first of three columns
+};
+
+void addRows(const std::vector<CsvRecord>& rows, TableBuilder& table) {
+  TableColumns columns;
+  bool isFirst = true;
+  for (const CsvRecord& row : rows) {
+    std::vector<std::string> fields, titles;
+    for (const std::string& field : row.fields) {
+      fields.emplace_back(trim(field, " \t\""));
+      titles.push_back(toLower(fields.back()));
+    }
+    const std::string place = concat("line ", row.line);
+    if (!fields[0].starts_with('#') &&
+        !(std::exchange(isFirst, false) && columns.readTitles(table.source(), place, titles)))
+      columns.addRow(place, fields, table);
+  }
+}
+
+void readCsv(const std::string& text, TableBuilder& table) {
+  addRows(parseCsv(text, table.source()), table);
+}
+
+/// BIDS: index, name, abbreviation, color.
+void readTsv(const std::string& text, TableBuilder& table) {
+  std::vector<CsvRecord> rows;
+  std::size_t number = 0;
+  for (const std::string& line : split(text, '\n'))
+    if (++number; !trim(line).empty())
+      rows.push_back({number, split(trim(line, "\r"), '\t')});
+  addRows(rows, table);
+}
+
+/// Label description of ITK-SNAP, by its names in quotes, or a color table.
+void readLines(const std::string& text, TableBuilder& table) {
+  bool hasQuotes = false;
+  forEachLine(text, [&](const std::string&, std::string_view line) {
+    hasQuotes |= line.ends_with('"') && splitWords(line).size() >= 8;
+  });
+  hasQuotes ? readSnapTable(text, table) : readColorTable(text, table);
+}
+
+/// Entry of a JSON object: value and name in either order, as Medical Segmentation Decathlon and
+/// nnU-Net write them. Regions of nnU-Net, which join several values, are left out.
+void addMember(const std::string& key, const JsonNode& value, TableBuilder& table) {
+  const std::string place = concat('"', sanitize(key), '"');
+  if (value.isNumber() && !parseInteger(key))
+    table.add(place, static_cast<std::int64_t>(value.number(-2147483648.0, 2147483647.0)), key);
+  else if (!value.isArray())
+    table.add(place, parseInteger(key), value.text());
 }
 
 void readJsonTable(std::string_view text, TableBuilder& table) {
   const nlohmann::json document = parseJson(text, table.source());
   const JsonNode root(document, table.source());
   if (root.isObject()) {
-    for (const auto& [key, name] : root.members())
-      table.add(concat('"', sanitize(key), '"'), parseInteger(key), name.text());
+    const auto labels = root.find("labels"); // dataset.json of nnU-Net and of the Decathlon
+    for (const auto& [key, value] : (labels && labels->isObject() ? *labels : root).members())
+      addMember(key, value, table);
     return;
   }
   std::size_t number = 0;
@@ -148,16 +215,17 @@ void readJsonTable(std::string_view text, TableBuilder& table) {
 LabelNames readLabelNames(const std::filesystem::path& path) {
   using Read = void (*)(const std::string&, TableBuilder&);
   static const std::map<std::string, Read> readers = {
-      {".ctbl", readColorTable},
-      {".txt", readColorTable},
+      {".ctbl", readLines},
+      {".txt", readLines},
       {".label", readSnapTable},
       {".csv", readCsv},
+      {".tsv", readTsv},
       {".json", [](const std::string& text, TableBuilder& table) { readJsonTable(text, table); }}};
   const auto reader = readers.find(lowercaseExtension(path));
   if (reader == readers.end())
     throw inputError(ErrorCode::unsupportedFile, path.string(),
                      "has no extension of a label table; give a .ctbl, .txt, "
-                     ".label, .json or .csv");
+                     ".label, .json, .csv or .tsv");
   TableBuilder table(path.string());
   reader->second(readText(path), table);
   return table.take();

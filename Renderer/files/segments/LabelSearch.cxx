@@ -25,7 +25,7 @@ struct SiblingTable {
 std::vector<SiblingTable> findSiblingTables(const std::filesystem::path& path) {
   std::vector<SiblingTable> tables;
   const std::filesystem::path stem = stripExtensions(path);
-  for (const char* extension : {".ctbl", ".label", ".json", ".csv"})
+  for (const char* extension : {".ctbl", ".label", ".json", ".csv", ".tsv"})
     tables.push_back({stem.string() + extension, false});
   tables.push_back({path.parent_path() / "seg_labels.json", true});
   std::erase_if(tables, [](const SiblingTable& table) { return !fileExists(table.file); });
