@@ -11,8 +11,10 @@
 #include <itkMetaImageIO.h>
 #include <itkNrrdImageIO.h>
 
+#include <array>
 #include <bit>
 #include <cstring>
+#include <fstream>
 #include <memory>
 
 namespace fenestra {
@@ -203,6 +205,28 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
   consume(image, makeSampleSource(path, stored, *io));
 }
 
+/// Throws Error (input) for what often lies under the name of an image: it is said what it is.
+void rejectMisnamed(const std::filesystem::path& path) {
+  std::array<char, 64> bytes{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(bytes.data(), bytes.size());
+  const std::string start = toLower({bytes.data(), static_cast<std::size_t>(file.gcount())});
+  if (start.starts_with("version https://git-lfs"))
+    throw inputError(ErrorCode::damagedFile, path,
+                     "is a pointer of Git LFS, not the file; run: git lfs pull");
+  if (const std::string_view text = trim(start);
+      text.starts_with("<!doctype html") || text.starts_with("<html"))
+    throw inputError(ErrorCode::damagedFile, path,
+                     "is a web page, not the file; download the file itself");
+  const std::string extension = lowercaseExtension(path);
+  if (start.starts_with("\x1f\x8b") && extension != ".gz")
+    throw inputError(ErrorCode::damagedFile, path, "is compressed by gzip; name it ",
+                     path.filename().string(), ".gz");
+  if (extension == ".gz" && !start.empty() && !start.starts_with("\x1f\x8b"))
+    throw inputError(ErrorCode::damagedFile, path, "is not compressed; name it ",
+                     path.stem().string());
+}
+
 } // namespace
 
 void readMedicalImage(const std::filesystem::path& path, Components allowed,
@@ -215,6 +239,7 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
     throw inputError(
         ErrorCode::unsupportedFile, path,
         "has an unknown extension; give a .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd file");
+  rejectMisnamed(path);
   try {
     readChecked(path, *format, allowed, consume);
   } catch (const Error&) {

@@ -95,19 +95,18 @@ FoundNames readSiblingNames(const std::filesystem::path& path,
 
 } // namespace
 
-bool hasLabelNames(const std::filesystem::path& path, const std::string& extensions,
-                   const std::optional<std::string>& requested) {
-  return requested || extensions.find("<LabelTable>") != std::string::npos ||
-         !findSiblingTables(path).empty();
-}
-
 FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
                           const std::string& extensions,
                           const std::optional<std::string>& requested) {
   if (!requested) {
     if (auto inFile = parseLabelNamesXml(extensions, path.string()))
       return {*inFile, path.string()};
-    return readSiblingNames(path, values);
+    FoundNames beside = readSiblingNames(path, values);
+    if (beside.names.empty() && values.size() == 1) { // a mask, as of a structure per file
+      beside.names[*values.begin()].name = stripExtensions(path).filename();
+      beside.source = path;
+    }
+    return beside;
   }
   constexpr std::size_t maxListed = 8;
   FoundNames found = readRequestedNames(path, extensions, *requested);

@@ -19,14 +19,10 @@ struct FoundNames {
 /// built-in table, or "totalsegmentator", whose version follows from the label table in the NIfTI
 /// header `extensions`. If nothing is requested, uses that label table, else a table with the label
 /// map's stem that names all values, else a seg_labels.json that names exactly these values. A
-/// table beside the label map that does not match gives a warning. Throws Error (input, request) if
+/// single value without a name is called as the file. A table beside the label map that does not match gives a warning. Throws Error (input, request) if
 /// the requested table does not exist or names none of the values.
 FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
                           const std::string& extensions,
                           const std::optional<std::string>& requested);
-
-/// True if findLabelNames needs the values, since there is a table to match.
-bool hasLabelNames(const std::filesystem::path& path, const std::string& extensions,
-                   const std::optional<std::string>& requested);
 
 } // namespace fenestra

@@ -7,6 +7,7 @@
 #include "files/segments/ClosedSurface.h"
 #include "files/segments/LabelSearch.h"
 #include "io/InputRegistry.h"
+#include "io/JsonNode.h"
 
 #include <map>
 #include <optional>
@@ -150,6 +151,35 @@ private:
   std::string m_prefix;
 };
 
+constexpr const char* mitkGroups = "org_mitk_multilabel_segmentation_labelgroups";
+
+/// Reads MITK's segments: JSON, a list of groups (layers), each with its labels.
+std::vector<SegmentInfo> readMitkSegments(const std::string& text, const std::string& source,
+                                          std::size_t layerCount) {
+  const std::string place = concat(source, ": ", mitkGroups);
+  const nlohmann::json document = parseJson(text, place);
+  std::vector<SegmentInfo> segments;
+  std::size_t layer = 0;
+  for (const JsonNode& group : JsonNode(document, place).elements()) {
+    if (layer == layerCount)
+      throw fieldError(source, mitkGroups, "has more groups than the file has layers, ",
+                       layerCount);
+    for (const JsonNode& label : group.at("labels").elements()) {
+      const auto value = static_cast<std::int32_t>(label.at("value").number(1.0, 65535.0));
+      SegmentInfo info{.id = concat("Segment_", layer, '_', value),
+                       .name = label.at("name").text(),
+                       .labelValue = value,
+                       .layer = layer};
+      if (const auto color = label.find("color"))
+        if (const auto rgb = color->find("value"))
+          info.color = rgb->triple(0.0, 1.0).array();
+      segments.push_back(std::move(info));
+    }
+    ++layer;
+  }
+  return segments;
+}
+
 /// Reads the segments that the fields describe. Throws Error (input), also if they are fractional.
 std::vector<SegmentInfo> readSegments(const Fields& fields, const std::string& source,
                                       std::size_t layerCount) {
@@ -159,6 +189,8 @@ std::vector<SegmentInfo> readSegments(const Fields& fields, const std::string& s
       throw fieldError(source, field,
                        "is a fractional labelmap, which is not supported; export the "
                        "segmentation in Slicer as a binary labelmap (.seg.nrrd)");
+  if (const auto groups = fields.find(mitkGroups); groups != fields.end())
+    return readMitkSegments(groups->second, source, layerCount);
   std::vector<SegmentInfo> segments;
   while (segments.size() < maxSegments) {
     const SegmentFields segmentFields(fields, source, concat("Segment", segments.size(), '_'));
@@ -207,12 +239,10 @@ std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
     return readClosedSurfaceInfos(path);
   const std::string source = path.string();
   std::vector<SegmentInfo> segments;
-  bool mayBeNamed = false;
   readMedicalImage(path, Components::any, [&](const MedicalImage& image, const SampleSource&) {
     segments = readSegments(image.fields, source, image.components);
-    mayBeNamed = segments.empty() && hasLabelNames(path, image.extensions, labels);
   });
-  if (!mayBeNamed)
+  if (!segments.empty())
     return segments;
   const Segmentation named = readSegmentation(path, nullptr, labels);
   return named.namesSource().empty() ? segments : named.segments();
