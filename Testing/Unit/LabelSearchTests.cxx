@@ -105,6 +105,20 @@ TEST(LabelSearch, TableBesideTheMapIsUsedIfItMatches) {
   EXPECT_EQ(readSegmentation(map).warnings().size(), 2u);
 }
 
+/// As programs write that give each structure a file.
+TEST(LabelSearch, AMaskIsCalledAsItsFile) {
+  const TemporaryFolder folder;
+  NiftiFile file;
+  file.sformCode = 1;
+  file.samples[3] = 1;
+  const auto mask = folder.write("adrenal_gland_left.nii", file.bytes());
+  EXPECT_EQ(findName(readSegmentation(mask), 1), "adrenal_gland_left");
+  EXPECT_EQ(readSegmentInfos(mask, {}).at(0).name, "adrenal_gland_left");
+  EXPECT_EQ(findName(readSegmentation(folder.write("map.nii", makeLabelMap())), 5), "Segment_5");
+  folder.write("adrenal_gland_left.json", R"({"1": "gland"})");
+  EXPECT_EQ(findName(readSegmentation(mask), 1), "gland") << "a table precedes";
+}
+
 TEST(LabelSearch, SegmentationWithNamesRejectsATable) {
   const TemporaryFolder folder;
   const std::string header =

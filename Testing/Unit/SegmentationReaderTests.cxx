@@ -161,6 +161,34 @@ TEST(SegmentationReader, ReadsOverlappingLayers) {
   }
 }
 
+/// MITK lists its labels in JSON, in one group per layer.
+TEST(SegmentationReader, ReadsTheLabelGroupsOfMitk) {
+  const TemporaryFolder folder;
+  constexpr const char* key = "org_mitk_multilabel_segmentation_labelgroups";
+  FileGeometry geometry{.components = 2};
+  geometry.fields[key] = R"([{"labels": [{"name": "liver", "value": 1,
+      "color": {"type": "ColorProperty", "value": [0.5, 0.25, 1]}}, {"name": "cyst", "value": 2}]},
+      {"labels": [{"name": "vessel", "value": 1}]}])";
+  std::erase(geometry.fields[key], '\n');
+  std::vector<std::uint8_t> samples(48, 0);
+  samples[0] = samples[1] = 1; // both layers of the first voxel
+  samples[2] = 2;
+  const auto path = folder / "labels.nrrd";
+  writeFile(path, samples, geometry);
+  const Segmentation segmentation = readSegmentation(path);
+  ASSERT_EQ(segmentation.segments().size(), 3U);
+  EXPECT_NEAR(segmentation.segments()[0].color[1], 0.25, 1e-12);
+  for (const char* name : {"liver", "cyst", "vessel"})
+    EXPECT_EQ(segmentation.makeFocusMask({name}, segmentation.grid()).count, 1) << name;
+  for (const char* damaged :
+       {"[{", R"([{"labels": [{"name": "a", "value": 0}]}])", R"([{"names": []}])",
+        R"([{"labels": []}, {"labels": []}, {"labels": []}])"}) {
+    geometry.fields[key] = damaged;
+    writeFile(path, samples, geometry);
+    EXPECT_THROW(readSegmentation(path), Error) << damaged;
+  }
+}
+
 TEST(SegmentationReader, RefusesFilesThatAreNotSegmentations) {
   const TemporaryFolder folder;
   const auto refuse = [&folder](const std::string& text) {

@@ -218,6 +218,22 @@ TEST(VolumeReader, RefusesMissingAndUnknownFiles) {
   }
 }
 
+TEST(VolumeReader, SaysWhatMisnamedFilesAre) {
+  const TemporaryFolder folder;
+  const auto expectHint = [&](const char* name, const std::string& bytes, const std::string& hint) {
+    expectRefusal(folder.write(name, bytes), "damaged-file | " + hint);
+  };
+  const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n";
+  for (const char* name : {"v.nii.gz", "v.nii", "v.nrrd", "v.mha"}) {
+    expectHint(name, pointer, "git lfs pull");
+    expectHint(name, "\n <!DOCTYPE html><html></html>", "web page");
+  }
+  writeFile(folder / "v.nii.gz", std::vector<std::uint8_t>(24), {.size = {3, 4, 2}});
+  expectHint("packed.nii", readBytes(folder / "v.nii.gz"), "packed.nii.gz");
+  writeFile(folder / "v.nii", std::vector<std::uint8_t>(24), {.size = {3, 4, 2}});
+  expectHint("plain.nii.gz", readBytes(folder / "v.nii"), "name it plain.nii");
+}
+
 TEST(VolumeReader, RefusesTruncatedFiles) {
   const TemporaryFolder folder;
   std::vector<std::uint16_t> samples(8000);
