@@ -147,7 +147,8 @@ TEST(PresetsCommand, PresetCanBeAFile) {
 
 TEST(PresetsCommand, RejectsUnknownAndDamagedPresets) {
   const TemporaryFolder& folder = kneeFolder();
-  folder.write("values.nrrd", NrrdText{.type = "uint8"}.encode(std::string(64, '\1')));
+  folder.write("values.nrrd",
+               NrrdText{.type = "uint8"}.encode(std::string(32, '\1') + std::string(32, '\2')));
   folder.write("size.json", R"({"title": "", "focus": {"names": ["a"]}, "modality": "MR",
                                "flags": {"size": "9x9"}})");
   folder.write("brackets.json", "{");

@@ -73,8 +73,9 @@ TEST(ErrorAdvice, CompleteMessages) {
   EXPECT_EQ(compose([] { findLights("sun"); }), "sun: no such file or preset; expected a file or "
                                                 "one of amber, cinema, headlight, soft, studio, "
                                                 "theatre-wet, theatre");
-  EXPECT_EQ(compose([] { readLabelNames("a.xlsx"); }),
-            "a.xlsx: has no extension of a label table; give a .ctbl, .txt, .label, .json or .csv");
+  EXPECT_EQ(
+      compose([] { readLabelNames("a.xlsx"); }),
+      "a.xlsx: has no extension of a label table; give a .ctbl, .txt, .label, .json, .csv or .tsv");
   EXPECT_EQ(compose([] { adjustView({.scale = 1.0}, {.projection = Projection::perspective}); }),
             "scale: the scene's camera is perspective; use --angle, or add --projection "
             "orthographic");

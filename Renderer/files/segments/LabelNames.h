@@ -28,8 +28,9 @@ using LabelNames = std::map<std::int32_t, LabelName>;
 ///   .json        {"5": "liver"}, {"liver": 5}, either of them as "labels" (dataset.json of nnU-Net
 ///                and Medical Segmentation Decathlon), or [{"label": 5, "name": "liver"}]
 ///   .csv, .tsv   columns "label" (or "value", "id", "index"), "name" and "color" (#rrggbb, or
-///                color_r and the two after it, 0 to 255) if a first line names them, else the first
-///                two columns; separated by commas or semicolons (.csv) or tabs (.tsv, as in BIDS)
+///                color_r and the two after it, 0 to 255) if a first line names them, else the
+///                first two columns; separated by commas or semicolons (.csv) or tabs (.tsv, as in
+///                BIDS)
 /// Skips empty lines and lines that begin with #. Throws Error (input) for another extension, a
 /// malformed line or entry, two names for one value, and a table without names.
 LabelNames readLabelNames(const std::filesystem::path& path);

@@ -102,10 +102,8 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
     if (auto inFile = parseLabelNamesXml(extensions, path.string()))
       return {*inFile, path.string()};
     FoundNames beside = readSiblingNames(path, values);
-    if (beside.names.empty() && values.size() == 1) { // a mask, as of a structure per file
+    if (beside.names.empty() && values.size() == 1) // a mask, as of a structure per file
       beside.names[*values.begin()].name = stripExtensions(path).filename();
-      beside.source = path;
-    }
     return beside;
   }
   constexpr std::size_t maxListed = 8;

@@ -11,7 +11,7 @@ namespace fenestra {
 
 struct FoundNames {
   LabelNames names = {};   ///< empty: the values have no names
-  std::string source = {}; ///< file, or name of a built-in table
+  std::string source = {}; ///< table: a file, or the name of a built-in one
   std::vector<Message> warnings = {};
 };
 
@@ -19,8 +19,9 @@ struct FoundNames {
 /// built-in table, or "totalsegmentator", whose version follows from the label table in the NIfTI
 /// header `extensions`. If nothing is requested, uses that label table, else a table with the label
 /// map's stem that names all values, else a seg_labels.json that names exactly these values. A
-/// single value without a name is called as the file. A table beside the label map that does not match gives a warning. Throws Error (input, request) if
-/// the requested table does not exist or names none of the values.
+/// single value without a name is called as the file. A table beside the label map that does not
+/// match gives a warning. Throws Error (input, request) if the requested table does not exist or
+/// names none of the values.
 FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
                           const std::string& extensions,
                           const std::optional<std::string>& requested);

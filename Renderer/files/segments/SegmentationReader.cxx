@@ -9,6 +9,7 @@
 #include "io/InputRegistry.h"
 #include "io/JsonNode.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -245,7 +246,8 @@ std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
   if (!segments.empty())
     return segments;
   const Segmentation named = readSegmentation(path, nullptr, labels);
-  return named.namesSource().empty() ? segments : named.segments();
+  const auto isNamed = [](const SegmentInfo& segment) { return segment.name != segment.id; };
+  return std::ranges::any_of(named.segments(), isNamed) ? named.segments() : segments;
 }
 
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference,
