@@ -51,7 +51,8 @@ struct RenderOptionTable {
        "name or id [the scene's]",
        ValueSpec::labels().bind(scene.segmentation), OverrideGroup::focus},
       {"labels", "FILE|NAME", sceneGroup,
-       "Names of label values: a .ctbl, .txt, .label, .json, .csv or .tsv file, or totalsegmentator, "
+       "Names of label values: a .ctbl, .txt, .label, .json, .csv or .tsv file, or "
+       "totalsegmentator, "
        "totalsegmentator1, totalsegmentator2 or freesurfer [in or beside the label map]",
        ValueSpec::text()
            .bind(scene.labels)
