@@ -173,13 +173,15 @@ TEST(SegmentationReader, ReadsTheLabelGroupsOfMitk) {
   std::vector<std::uint8_t> samples(48, 0);
   samples[0] = samples[1] = 1; // both layers of the first voxel
   samples[2] = 2;
+  samples[3] = 1; // the second layer of the second voxel
   const auto path = folder / "labels.nrrd";
   writeFile(path, samples, geometry);
   const Segmentation segmentation = readSegmentation(path);
   ASSERT_EQ(segmentation.segments().size(), 3U);
   EXPECT_NEAR(segmentation.segments()[0].color[1], 0.25, 1e-12);
-  for (const char* name : {"liver", "cyst", "vessel"})
-    EXPECT_EQ(segmentation.makeFocusMask({name}, segmentation.grid()).count, 1) << name;
+  for (const auto& [name, count] :
+       {std::pair("liver", 1), std::pair("cyst", 1), std::pair("vessel", 2)})
+    EXPECT_EQ(segmentation.makeFocusMask({name}, segmentation.grid()).count, count) << name;
   for (const char* damaged :
        {"[{", R"([{"labels": [{"name": "a", "value": 0}]}])", R"([{"names": []}])",
         R"([{"labels": []}, {"labels": []}, {"labels": []}])"}) {
