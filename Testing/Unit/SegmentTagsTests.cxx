@@ -38,7 +38,9 @@ TEST(SegmentTags, TerminologyIsReadWithoutTheLabels) {
   EXPECT_EQ(infos[2].type, "");
   EXPECT_EQ(infos[2].category, "");
   EXPECT_EQ(readSegmentation(folder / "s.seg.nrrd").segments()[1].region, "SCT^12738006");
-  writeFile(folder / "labels.nrrd", std::vector<std::uint8_t>(24, 1));
+  std::vector<std::uint8_t> unnamed(24, 1);
+  unnamed[0] = 2;
+  writeFile(folder / "labels.nrrd", unnamed);
   EXPECT_TRUE(readSegmentInfos(folder / "labels.nrrd").empty());
   expectRefused(folder / "none.seg.nrrd", "missing-file",
                 [&] { readSegmentInfos(folder / "none.seg.nrrd"); });
