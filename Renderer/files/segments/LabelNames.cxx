@@ -105,8 +105,9 @@ std::optional<Rgb> parseHexColor(std::string_view text) {
   Rgb color;
   for (int i = 0; i < 3; ++i) {
     unsigned byte = 0;
-    const char* const first = text.data() + 1 + 2 * i;
-    if (std::from_chars(first, first + 2, byte, 16).ptr != first + 2)
+    const std::string_view digits = text.substr(1 + 2 * static_cast<std::size_t>(i), 2);
+    const char* const end = digits.data() + digits.size();
+    if (std::from_chars(digits.data(), end, byte, 16).ptr != end)
       return std::nullopt;
     color[i] = byte / 255.0;
   }
