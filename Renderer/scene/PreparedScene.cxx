@@ -71,7 +71,8 @@ void PreparedScene::prepare() {
     if (!isTintOnly(*m_plan))
       m_mixture.get(m_plan.result(), currentTint(), transfer);
   }
-  m_focusWarnings.get(volume, focus, transfer);
+  if (!hasSolidFocus())
+    m_focusWarnings.get(volume, focus, transfer);
   if (r.view.isAutomatic() && focus->mask)
     m_view.get(raw, settings, focus, transfer);
   const auto minMaxGrid =
@@ -150,8 +151,12 @@ void PreparedScene::makeTint(const std::string& name) {
   const auto hasVoxels = m_hasVoxels.get(m_segments.result());
   if (materials->table.detectsSkin)
     m_skin.get(currentVolume());
+  if (isAdjusted && m_transfer->isByModality)
+    m_transparent.get(currentSegments(), hasVoxels, r.focus, m_volume.result(),
+                      m_transfer.result());
   const auto plan = m_plan.get(m_segments.result(), hasVoxels, materials, r.materialChanges,
-                               isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result());
+                               isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result(),
+                               m_transparent.result());
   const auto weights = m_labelWeights.get(currentSegments(), plan->parts, m_skin.result(),
                                           r.focusStyle.shaping.smoothing, volume().grid);
   const auto transfer = m_transfer.result();
@@ -171,9 +176,10 @@ StageSeconds PreparedScene::seconds() const {
                   m_sceneTransfer.seconds() + m_hasVoxels.seconds() + m_content.seconds() +
                   m_transfer.seconds(),
           .smoothing = m_smoothed.seconds() + m_islands.seconds(),
-          .materials = m_materials.seconds() + m_plan.seconds() + m_skin.seconds() +
-                       m_labelWeights.seconds() + m_tint.seconds() + m_interfaces.seconds() +
-                       m_tintContrast.seconds() + m_adjustedTint.seconds() + m_mixture.seconds(),
+          .materials = m_materials.seconds() + m_transparent.seconds() + m_plan.seconds() +
+                       m_skin.seconds() + m_labelWeights.seconds() + m_tint.seconds() +
+                       m_interfaces.seconds() + m_tintContrast.seconds() +
+                       m_adjustedTint.seconds() + m_mixture.seconds(),
           .classify = m_minMaxGrid.seconds() + m_rawMinMaxGrid.seconds() +
                       m_occupiedBounds.seconds() + m_contrast.seconds() + m_style.seconds() +
                       m_majorants.seconds(),
@@ -224,7 +230,8 @@ std::vector<std::string> PreparedScene::choices() const {
     const std::size_t colors = tint()->albedo.size() - 1;
     facts.push_back(concat("materials: ", m_materials->source, ", ", colors,
                            colors == 1 ? " color" : " colors",
-                           m_plan->hasDetectedSkin() ? ", skin detected" : ""));
+                           m_plan->hasDetectedSkin() ? ", skin detected" : "",
+                           hasSolidFocus() ? ", focus as a solid body" : ""));
   }
   const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
   if (softness > 0.0)
@@ -242,7 +249,8 @@ std::vector<Message> PreparedScene::warnings() const {
   if (m_segments.result())
     append(m_segments->segmentation.warnings(), warnings);
   append(m_transfer->warnings, warnings);
-  append(*m_focusWarnings, warnings);
+  if (m_focusWarnings.result())
+    append(*m_focusWarnings, warnings);
   if (domain().indexCorners().empty())
     warnings.push_back(makeMessage(ErrorCode::emptyCrop, "crop box",
                                    "lies outside the volume, so the image is empty"));

@@ -92,6 +92,7 @@ private:
   /// Name of the materials to use; `segments`: null without labels.
   std::string resolveMaterials(const Handle<SegmentsInput>& segments) const;
   void makeTint(const std::string& name);
+  bool hasSolidFocus() const { return m_transparent.result() && !m_transparent->empty(); }
   /// Smooths the volume if the request says so. Returns currentVolume().
   VolumeHandle smooth();
   VolumeHandle currentVolume() const;
@@ -110,11 +111,11 @@ private:
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
                     s.m_trimmed, s.m_focus, s.m_sceneTransfer, s.m_hasVoxels, s.m_content,
-                    s.m_transfer, s.m_smoothed, s.m_islands, s.m_materials, s.m_skin, s.m_plan,
-                    s.m_labelWeights, s.m_tint, s.m_interfaces, s.m_tintContrast, s.m_adjustedTint,
-                    s.m_mixture, s.m_focusWarnings, s.m_view, s.m_minMaxGrid, s.m_rawMinMaxGrid,
-                    s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
-                    s.m_majorants, s.m_features);
+                    s.m_transfer, s.m_smoothed, s.m_islands, s.m_materials, s.m_skin,
+                    s.m_transparent, s.m_plan, s.m_labelWeights, s.m_tint, s.m_interfaces,
+                    s.m_tintContrast, s.m_adjustedTint, s.m_mixture, s.m_focusWarnings, s.m_view,
+                    s.m_minMaxGrid, s.m_rawMinMaxGrid, s.m_occupiedBounds, s.m_camera, s.m_lights,
+                    s.m_clip, s.m_contrast, s.m_style, s.m_majorants, s.m_features);
   }
 
   RenderRequest m_request;
@@ -134,6 +135,7 @@ private:
   CachedStage<&dropIslands> m_islands;
   CachedStage<&findMaterials> m_materials; ///< this and the next four: unused without materials
   CachedStage<&findSkin> m_skin;           ///< unused unless the materials detect skin
+  CachedStage<&findTransparentFocus> m_transparent; ///< unused with a given transfer function
   CachedStage<&makeTintPlan> m_plan;
   CachedStage<&computeLabelWeights> m_labelWeights;
   CachedStage<&buildTint> m_tint;
@@ -141,9 +143,9 @@ private:
       m_interfaces; ///< this and the next two: unused unless colors are adjusted
   CachedStage<&adjustTintContrast> m_tintContrast;
   CachedStage<&adjustTint> m_adjustedTint;
-  CachedStage<&makeMixture> m_mixture; ///< unused if segments differ only in color
-  CachedStage<&checkFocus> m_focusWarnings;
-  CachedStage<&chooseView> m_view; ///< used only by automatic views
+  CachedStage<&makeMixture> m_mixture;      ///< unused if segments differ only in color
+  CachedStage<&checkFocus> m_focusWarnings; ///< unused with a solid focus
+  CachedStage<&chooseView> m_view;          ///< used only by automatic views
   CachedStage<&makeMinMaxGrid> m_minMaxGrid;
   CachedStage<&makeMinMaxGrid> m_rawMinMaxGrid; ///< used only for the bounds of a smoothed volume
   CachedStage<&findOccupiedBounds> m_occupiedBounds; ///< unused with the scene's camera

@@ -17,10 +17,21 @@ constexpr std::size_t maxComponents = 256; ///< a component index is one byte
 constexpr const char* skinMaterial = "skin";
 constexpr int skinPriority = 1;
 
+/// Makes a tint a solid body. Its color is constant: that of the scalars at its surface, which are
+/// partial volume, would show the slices.
+void makeSolid(Material& material, double scalar) {
+  constexpr double solidExtinction = 3.0; // mm^-1, as soft tissue
+  material.kind = MaterialKind::medium;
+  material.color = ColorFunction({{0.0, (*material.color)(scalar)}});
+  material.extinction = ScalarFunction({{0.0, ScalarFunction::Value(solidExtinction)}});
+  material.interfaceWeight = 1.0;
+}
+
 /// Material of each segment after the changes. Around a focus whose colors are adjusted, segments
 /// have no palette colors, which would be the most vivid of the image.
 std::vector<SegmentMaterial> collectMaterials(const Segmentation& segmentation,
                                               const NamedMaterials& materials,
+                                              const TransparentFocus& transparent,
                                               const std::vector<std::string>& changes) {
   const std::vector<SegmentInfo>& segments = segmentation.segments();
   std::vector<SegmentMaterial> all = assignMaterials(segments, materials.table);
@@ -28,6 +39,10 @@ std::vector<SegmentMaterial> collectMaterials(const Segmentation& segmentation,
     for (SegmentMaterial& material : all)
       if (material.isFromPalette)
         material.medium.material = {};
+  for (const auto& [segment, median] : transparent)
+    if (Material& material = all[segment].medium.material;
+        material.color && material.kind == MaterialKind::tint)
+      makeSolid(material, median);
   for (const std::string& text : changes) {
     const MaterialChange change = parseMaterialChange(text, materials.table);
     const std::size_t i = segmentation.find(change.selector);
@@ -182,9 +197,11 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& input,
                       const Handle<std::vector<bool>>& hasVoxels,
                       const Handle<NamedMaterials>& materials,
                       const std::vector<std::string>& changes,
-                      const std::vector<std::string>& focus, const Handle<Mask>& skin) {
+                      const std::vector<std::string>& focus, const Handle<Mask>& skin,
+                      const Handle<TransparentFocus>& transparent) {
   const Segmentation& segmentation = input->segmentation;
-  const std::vector<SegmentMaterial> all = collectMaterials(segmentation, *materials, changes);
+  const std::vector<SegmentMaterial> all = collectMaterials(
+      segmentation, *materials, transparent ? *transparent : TransparentFocus(), changes);
   const std::vector<bool> isFocus = markFocus(segmentation, *materials, focus);
   TintPlan plan{.parts = {},
                 .components = {{unlabeledMaterial(*materials)}},

@@ -11,6 +11,8 @@
 #include "scene/Input.h"
 #include "scene/NamedPresets.h"
 
+#include <map>
+
 namespace fenestra {
 
 /// Segments of one component and one priority, or the detected skin, which is no segment.
@@ -35,6 +37,10 @@ struct TintPlan {
   bool hasDetectedSkin() const { return parts.back().segments.empty(); }
 };
 
+/// Segments (indices in Segmentation::segments()) of a focus that consists of transparent tissue,
+/// such as lungs, with the median of their scalars.
+using TransparentFocus = std::map<std::size_t, double>;
+
 /// For each of Segmentation::segments(): true if it has a voxel. Reads all labels.
 std::vector<bool> findNonEmpty(const Handle<SegmentsInput>& segments);
 
@@ -42,14 +48,17 @@ std::vector<bool> findNonEmpty(const Handle<SegmentsInput>& segments);
 /// focus gets components of its own. `hasVoxels`: from findNonEmpty(). `changes`: values of
 /// --material, which override the table. If colors are adjusted, a segment with a palette color
 /// keeps the volume's own colors. `focus`: ids, names or label values. `skin`: from findSkin();
-/// null or empty: none; ignored if a segment is skin. Throws Error (input) for a change to an
+/// null or empty: none; ignored if a segment is skin. `transparent`: segments to show as solid
+/// bodies with their surface at the segment's, and the color of the material at the median; null:
+/// none. Throws Error (input) for a change to an
 /// unknown segment, for context colors without a focus, if no segment has a voxel, and for more
 /// than 256 components.
 TintPlan makeTintPlan(const Handle<SegmentsInput>& segments,
                       const Handle<std::vector<bool>>& hasVoxels,
                       const Handle<NamedMaterials>& materials,
                       const std::vector<std::string>& changes,
-                      const std::vector<std::string>& focus, const Handle<Mask>& skin);
+                      const std::vector<std::string>& focus, const Handle<Mask>& skin,
+                      const Handle<TransparentFocus>& transparent);
 
 /// Label weights of the components. `smoothing`: MaskShaping::smoothing. Detected skin is resampled
 /// on the label grid (resampleMask()).

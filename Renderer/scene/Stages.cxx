@@ -1,5 +1,6 @@
 #include "scene/Stages.h"
 
+#include "base/Distribution.h"
 #include "base/Error.h"
 #include "base/TextStream.h"
 #include "clip/surface/SteadySurface.h"
@@ -12,6 +13,7 @@
 namespace fenestra {
 namespace {
 
+constexpr double mostTransparent = 0.5;                       ///< of a visible focus
 constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< by Modality
 
 /// Throws Error (input) if the extinction is too large. Because of null collisions, render time is
@@ -283,13 +285,31 @@ TransferChoice chooseTransfer(const VolumeHandle& read, const Handle<NamedTransf
   return transfer;
 }
 
+TransparentFocus findTransparentFocus(const Handle<SegmentsInput>& input,
+                                      const Handle<std::vector<bool>>& hasVoxels,
+                                      const std::vector<std::string>& names,
+                                      const VolumeHandle& volume,
+                                      const Handle<TransferChoice>& transfer) {
+  const Segmentation& segmentation = input->segmentation;
+  TransparentFocus found;
+  for (const std::string& name : names) {
+    const std::size_t number = segmentation.find(name);
+    if (!(*hasVoxels)[number])
+      continue;
+    const Mask mask = segmentation.makeMask({segmentation.segments()[number]}, volume->volume.grid);
+    if (transparentFraction(mask, volume->volume, transfer->function) <= mostTransparent)
+      return {};
+    found.emplace(number, findMedian(sampleValues(volume->volume, mask)));
+  }
+  return found;
+}
+
 std::vector<Message> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
                                 const Handle<TransferChoice>& transfer) {
-  constexpr double maxFraction = 0.5;
   if (!focus->mask)
     return {};
   const double fraction = transparentFraction(*focus->mask, volume->volume, transfer->function);
-  if (fraction <= maxFraction)
+  if (fraction <= mostTransparent)
     return {};
   return {makeMessage(ErrorCode::transparentFocus, transfer->source, "the transfer function makes ",
                       std::lround(100.0 * fraction), " % of the focus transparent")};

@@ -77,6 +77,15 @@ TransferChoice chooseTransfer(const VolumeHandle& volume, const Handle<NamedTran
                               const std::optional<Modality>& modality, double shift, double density,
                               GradientKind gradient);
 
+/// Segments of the focus and their medians, if the transfer function makes each mostly transparent;
+/// else empty: of lungs and their vessels, the vessels are visible. `hasVoxels`: from
+/// findNonEmpty(). Throws Error (input) for unknown names.
+TransparentFocus findTransparentFocus(const Handle<SegmentsInput>& segments,
+                                      const Handle<std::vector<bool>>& hasVoxels,
+                                      const std::vector<std::string>& names,
+                                      const VolumeHandle& volume,
+                                      const Handle<TransferChoice>& transfer);
+
 /// Warns if the transfer function leaves most of the focus transparent.
 std::vector<Message> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
                                 const Handle<TransferChoice>& transfer);

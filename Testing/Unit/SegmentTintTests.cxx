@@ -35,9 +35,11 @@ const Handle<NamedMaterials> contrast = std::make_shared<NamedMaterials>(findMat
 
 TintPlan makePlan(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
                   const std::vector<std::string>& changes = {},
-                  const std::vector<std::string>& focus = {}, const Handle<Mask>& skin = {}) {
+                  const std::vector<std::string>& focus = {}, const Handle<Mask>& skin = {},
+                  const TransparentFocus& transparent = {}) {
   const auto isNonEmpty = std::make_shared<std::vector<bool>>(findNonEmpty(segments));
-  return makeTintPlan(segments, isNonEmpty, materials, changes, focus, skin);
+  return makeTintPlan(segments, isNonEmpty, materials, changes, focus, skin,
+                      std::make_shared<TransparentFocus>(transparent));
 }
 
 using Parts = std::vector<TintPart>; ///< each: segments, priority, component; is it the focus?
@@ -180,6 +182,32 @@ TEST(SegmentTint, MixturesHaveTheMediaOfTheirMaterials) {
   for (const Component& component :
        buildMixture(*plan, buildTint(plan, weights, own.g), own).components)
     EXPECT_FALSE(component.transfer.shading) << "the volume has none";
+}
+
+/// Lungs become bodies with the color of their median, others remain tints. A segment without a
+/// color has none to show, and --material overrides.
+TEST(SegmentTint, TransparentFocusIsSolid) {
+  const auto segments = makeRow({"lung_left", "lung_right", "torso", "liver"});
+  const TransparentFocus transparent = {{0, -850.0}, {1, -700.0}, {2, -900.0}};
+  const auto makeSolid = [&](const std::vector<std::string>& changes) {
+    return makePlan(segments, library, changes, {}, {}, transparent);
+  };
+  const TintPlan plan = makeSolid({});
+  ASSERT_EQ(plan.components.size(), 4U);
+  const ColorFunction& color = *library->table.materials.at("lung").color;
+  const auto expectSolid = [&](std::size_t component, double median) {
+    const Material& lung = plan.components[component].material;
+    EXPECT_EQ(lung.kind, MaterialKind::medium);
+    for (const double scalar : {-1000.0, 0.0, 500.0}) {
+      EXPECT_EQ((*lung.color)(scalar).matrix(), color(median).matrix());
+      EXPECT_GT((*lung.extinction)(scalar).value(), 1.0);
+    }
+    EXPECT_GT(lung.interfaceWeight, 0.0);
+  };
+  EXPECT_EQ(plan.components[1].material.kind, MaterialKind::tint) << "liver";
+  expectSolid(2, -850.0);
+  expectSolid(3, -700.0);
+  EXPECT_TRUE(isTintOnly(makeSolid({"lung_left: material=lung", "lung_right: material=lung"})));
 }
 
 TEST(SegmentTint, RefusesInvalidRequests) {
