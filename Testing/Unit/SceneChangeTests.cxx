@@ -209,6 +209,34 @@ TEST_F(SceneChange, WarnsIfTheTransferFunctionHidesTheFocus) {
   expectMessage(warnings[0], "transparent-focus | 100 %");
 }
 
+/// By default, a lung is a solid body; a given transfer function is respected.
+TEST_F(SceneChange, DefaultTransferShowsALungAsASolidBody) {
+  std::vector<std::int16_t> voxels;
+  std::vector<std::uint8_t> labels;
+  for (int i = 0; i < edge * edge * edge; ++i) {
+    labels.push_back(i / edge % edge < edge / 2 ? 1 : 0);
+    voxels.push_back(labels.back() ? -850 : i % edge == 0 ? 300 : 40);
+  }
+  FileGeometry geometry;
+  geometry.size = {edge, edge, edge};
+  writeFile(folder / "ct.nrrd", voxels, geometry);
+  writeFile(folder / "lung.nrrd", labels, geometry); // one value: named by its file
+  request.input = folder / "ct.nrrd";
+  request.segmentation = folder / "lung.nrrd";
+  request.focus = {"lung"};
+  request.materials.reset();
+  request.transfer.reset();
+  const PreparedScene solid(request);
+  ASSERT_TRUE(solid.mixture());
+  EXPECT_GT(solid.mixture()->components.back().transfer.extinction(-850.0).value(), 1.0);
+  EXPECT_EQ(solid.warnings(), std::vector<Message>());
+  request.transfer = "ct-lung";
+  const PreparedScene vessels = solid.withRequest(request);
+  EXPECT_FALSE(vessels.mixture());
+  ASSERT_EQ(vessels.warnings().size(), 1U);
+  expectMessage(vessels.warnings()[0], "transparent-focus | 100 %");
+}
+
 TEST_F(SceneChange, SmoothedVolumeIsReused) {
   request.smoothing = {SmoothingRequest::Kind::given, 20.0};
   const PreparedScene before(request);
