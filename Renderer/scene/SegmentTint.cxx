@@ -24,7 +24,6 @@ void makeSolid(Material& material, double scalar) {
   material.kind = MaterialKind::medium;
   material.color = ColorFunction({{0.0, (*material.color)(scalar)}});
   material.extinction = ScalarFunction({{0.0, ScalarFunction::Value(solidExtinction)}});
-  material.interfaceWeight = 1.0;
 }
 
 /// Material of each segment after the changes. Around a focus whose colors are adjusted, segments

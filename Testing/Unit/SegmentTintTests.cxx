@@ -202,7 +202,6 @@ TEST(SegmentTint, TransparentFocusIsSolid) {
       EXPECT_EQ((*lung.color)(scalar).matrix(), color(median).matrix());
       EXPECT_GT((*lung.extinction)(scalar).value(), 1.0);
     }
-    EXPECT_GT(lung.interfaceWeight, 0.0);
   };
   EXPECT_EQ(plan.components[1].material.kind, MaterialKind::tint) << "liver";
   expectSolid(2, -850.0);
