@@ -157,7 +157,11 @@ void PreparedScene::makeTint(const std::string& name) {
   const auto plan = m_plan.get(m_segments.result(), hasVoxels, materials, r.materialChanges,
                                isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result(),
                                m_transparent.result());
-  const auto weights = m_labelWeights.get(currentSegments(), plan->parts, m_skin.result(),
+  const auto segments =
+      hasSolidFocus()
+          ? *m_separated.get(currentSegments(), m_transparent.result(), m_volume.result())
+          : currentSegments();
+  const auto weights = m_labelWeights.get(segments, plan->parts, m_skin.result(),
                                           r.focusStyle.shaping.smoothing, volume().grid);
   const auto transfer = m_transfer.result();
   const auto tint = m_tint.get(plan, weights, transfer->function.g);
@@ -176,9 +180,9 @@ StageSeconds PreparedScene::seconds() const {
                   m_sceneTransfer.seconds() + m_hasVoxels.seconds() + m_content.seconds() +
                   m_transfer.seconds(),
           .smoothing = m_smoothed.seconds() + m_islands.seconds(),
-          .materials = m_materials.seconds() + m_transparent.seconds() + m_plan.seconds() +
-                       m_skin.seconds() + m_labelWeights.seconds() + m_tint.seconds() +
-                       m_interfaces.seconds() + m_tintContrast.seconds() +
+          .materials = m_materials.seconds() + m_transparent.seconds() + m_separated.seconds() +
+                       m_plan.seconds() + m_skin.seconds() + m_labelWeights.seconds() +
+                       m_tint.seconds() + m_interfaces.seconds() + m_tintContrast.seconds() +
                        m_adjustedTint.seconds() + m_mixture.seconds(),
           .classify = m_minMaxGrid.seconds() + m_rawMinMaxGrid.seconds() +
                       m_occupiedBounds.seconds() + m_contrast.seconds() + m_style.seconds() +

@@ -109,13 +109,13 @@ private:
   }
   template <typename Self>
   static auto stages(Self& s) {
-    return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
-                    s.m_trimmed, s.m_focus, s.m_sceneTransfer, s.m_hasVoxels, s.m_content,
-                    s.m_transfer, s.m_smoothed, s.m_islands, s.m_materials, s.m_skin,
-                    s.m_transparent, s.m_plan, s.m_labelWeights, s.m_tint, s.m_interfaces,
-                    s.m_tintContrast, s.m_adjustedTint, s.m_mixture, s.m_focusWarnings, s.m_view,
-                    s.m_minMaxGrid, s.m_rawMinMaxGrid, s.m_occupiedBounds, s.m_camera, s.m_lights,
-                    s.m_clip, s.m_contrast, s.m_style, s.m_majorants, s.m_features);
+    return std::tie(
+        s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments, s.m_trimmed,
+        s.m_focus, s.m_sceneTransfer, s.m_hasVoxels, s.m_content, s.m_transfer, s.m_smoothed,
+        s.m_islands, s.m_materials, s.m_skin, s.m_transparent, s.m_separated, s.m_plan,
+        s.m_labelWeights, s.m_tint, s.m_interfaces, s.m_tintContrast, s.m_adjustedTint, s.m_mixture,
+        s.m_focusWarnings, s.m_view, s.m_minMaxGrid, s.m_rawMinMaxGrid, s.m_occupiedBounds,
+        s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style, s.m_majorants, s.m_features);
   }
 
   RenderRequest m_request;
@@ -136,6 +136,7 @@ private:
   CachedStage<&findMaterials> m_materials; ///< this and the next four: unused without materials
   CachedStage<&findSkin> m_skin;           ///< unused unless the materials detect skin
   CachedStage<&findTransparentFocus> m_transparent; ///< unused with a given transfer function
+  CachedStage<&separateSegments> m_separated;       ///< unused without a solid focus
   CachedStage<&makeTintPlan> m_plan;
   CachedStage<&computeLabelWeights> m_labelWeights;
   CachedStage<&buildTint> m_tint;

@@ -304,6 +304,31 @@ TransparentFocus findTransparentFocus(const Handle<SegmentsInput>& input,
   return found;
 }
 
+Handle<SegmentsInput> separateSegments(const Handle<SegmentsInput>& input,
+                                       const Handle<TransparentFocus>& transparent,
+                                       const VolumeHandle& volume) {
+  constexpr double gap = 5.0; // mm; smoothing leaves about half
+  const Segmentation& original = input->segmentation;
+  std::vector<SegmentInfo> segments;
+  std::vector<Mask> masks;
+  for (const auto& [number, median] : *transparent) {
+    segments.push_back(original.segments()[number]);
+    masks.push_back(original.makeMask({segments.back()}, volume->volume.grid));
+  }
+  std::shared_ptr<SegmentsInput> copy;
+  for (std::size_t i = 0; i < masks.size(); ++i) {
+    Mask mask = masks[i];
+    for (std::size_t k = i + 1; k < masks.size(); ++k)
+      mask = removeContact(std::move(mask), masks[k], gap);
+    if (mask.count == masks[i].count || 2 * mask.count < masks[i].count) // thin, such as a bronchus
+      continue;
+    if (!copy)
+      copy = std::make_shared<SegmentsInput>(*input);
+    copy->segmentation.restrictSegment(segments[i], mask);
+  }
+  return copy ? copy : input;
+}
+
 std::vector<Message> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
                                 const Handle<TransferChoice>& transfer) {
   if (!focus->mask)

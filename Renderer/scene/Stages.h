@@ -86,6 +86,12 @@ TransparentFocus findTransparentFocus(const Handle<SegmentsInput>& segments,
                                       const VolumeHandle& volume,
                                       const Handle<TransferChoice>& transfer);
 
+/// Segments in which gaps separate those of a transparent focus that touch, such as the lobes of a
+/// lung: as solid bodies they would have no fissures. A segment that would lose over half remains.
+Handle<SegmentsInput> separateSegments(const Handle<SegmentsInput>& segments,
+                                       const Handle<TransparentFocus>& transparent,
+                                       const VolumeHandle& volume);
+
 /// Warns if the transfer function leaves most of the focus transparent.
 std::vector<Message> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
                                 const Handle<TransferChoice>& transfer);

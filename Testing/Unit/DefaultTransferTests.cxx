@@ -119,6 +119,12 @@ TEST(DefaultTransfer, TransparentFocusHasNoVisibleSegment) {
     return findTransparentFocus(segments, hasVoxels, names, volume, transfer);
   };
   EXPECT_EQ(find({"left", "empty", "right"}), (TransparentFocus{{0, -850.0}, {1, -700.0}}));
+  const auto separated = separateSegments(
+      segments, std::make_shared<TransparentFocus>(find({"left", "right"})), volume);
+  const auto count = [](const SegmentStatistics& segment) { return segment.voxels; };
+  std::vector<std::int64_t> counts;
+  std::ranges::transform(separated->segmentation.statistics(), std::back_inserter(counts), count);
+  EXPECT_EQ(counts, (std::vector<std::int64_t>{200, 400, 400, 0})) << "a gap of 4 mm in the first";
   EXPECT_EQ(find({"left", "vessel"}), TransparentFocus());
   EXPECT_EQ(find({"empty"}), TransparentFocus());
 }
