@@ -4,7 +4,7 @@
 // arguments are equal.
 
 #include "integrator/render/Render.h"
-#include "scene/Stages.h"
+#include "scene/SolidFocus.h"
 #include "scene/VolumeSmoothing.h"
 
 #include <tuple>

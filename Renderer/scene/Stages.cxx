@@ -1,6 +1,5 @@
 #include "scene/Stages.h"
 
-#include "base/Distribution.h"
 #include "base/Error.h"
 #include "base/TextStream.h"
 #include "clip/surface/SteadySurface.h"
@@ -13,7 +12,6 @@
 namespace fenestra {
 namespace {
 
-constexpr double mostTransparent = 0.5;                       ///< of a visible focus
 constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< by Modality
 
 /// Throws Error (input) if the extinction is too large. Because of null collisions, render time is
@@ -283,50 +281,6 @@ TransferChoice chooseTransfer(const VolumeHandle& read, const Handle<NamedTransf
                      "all voxels have the same value, so gradients for surface shading are zero; "
                      "use a transfer function with shading off (\"shading\": \"volume\")");
   return transfer;
-}
-
-TransparentFocus findTransparentFocus(const Handle<SegmentsInput>& input,
-                                      const Handle<std::vector<bool>>& hasVoxels,
-                                      const std::vector<std::string>& names,
-                                      const VolumeHandle& volume,
-                                      const Handle<TransferChoice>& transfer) {
-  const Segmentation& segmentation = input->segmentation;
-  TransparentFocus found;
-  for (const std::string& name : names) {
-    const std::size_t number = segmentation.find(name);
-    if (!(*hasVoxels)[number])
-      continue;
-    const Mask mask = segmentation.makeMask({segmentation.segments()[number]}, volume->volume.grid);
-    if (transparentFraction(mask, volume->volume, transfer->function) <= mostTransparent)
-      return {};
-    found.emplace(number, findMedian(sampleValues(volume->volume, mask)));
-  }
-  return found;
-}
-
-Handle<SegmentsInput> separateSegments(const Handle<SegmentsInput>& input,
-                                       const Handle<TransparentFocus>& transparent,
-                                       const VolumeHandle& volume) {
-  constexpr double gap = 5.0; // mm; smoothing leaves about half
-  const Segmentation& original = input->segmentation;
-  std::vector<SegmentInfo> segments;
-  std::vector<Mask> masks;
-  for (const auto& [number, median] : *transparent) {
-    segments.push_back(original.segments()[number]);
-    masks.push_back(original.makeMask({segments.back()}, volume->volume.grid));
-  }
-  std::shared_ptr<SegmentsInput> copy;
-  for (std::size_t i = 0; i < masks.size(); ++i) {
-    Mask mask = masks[i];
-    for (std::size_t k = i + 1; k < masks.size(); ++k)
-      mask = removeContact(std::move(mask), masks[k], gap);
-    if (mask.count == masks[i].count || 2 * mask.count < masks[i].count) // thin, such as a bronchus
-      continue;
-    if (!copy)
-      copy = std::make_shared<SegmentsInput>(*input);
-    copy->segmentation.restrictSegment(segments[i], mask);
-  }
-  return copy ? copy : input;
 }
 
 std::vector<Message> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,

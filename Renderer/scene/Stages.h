@@ -77,20 +77,8 @@ TransferChoice chooseTransfer(const VolumeHandle& volume, const Handle<NamedTran
                               const std::optional<Modality>& modality, double shift, double density,
                               GradientKind gradient);
 
-/// Segments of the focus and their medians, if the transfer function makes each mostly transparent;
-/// else empty: of lungs and their vessels, the vessels are visible. `hasVoxels`: from
-/// findNonEmpty(). Throws Error (input) for unknown names.
-TransparentFocus findTransparentFocus(const Handle<SegmentsInput>& segments,
-                                      const Handle<std::vector<bool>>& hasVoxels,
-                                      const std::vector<std::string>& names,
-                                      const VolumeHandle& volume,
-                                      const Handle<TransferChoice>& transfer);
-
-/// Segments in which gaps separate those of a transparent focus that touch, such as the lobes of a
-/// lung: as solid bodies they would have no fissures. A segment that would lose over half remains.
-Handle<SegmentsInput> separateSegments(const Handle<SegmentsInput>& segments,
-                                       const Handle<TransparentFocus>& transparent,
-                                       const VolumeHandle& volume);
+/// Greatest transparentFraction() of a visible focus.
+inline constexpr double mostTransparent = 0.5;
 
 /// Warns if the transfer function leaves most of the focus transparent.
 std::vector<Message> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,

@@ -8,7 +8,6 @@
 #include "io/EmbeddedResources.h"
 #include "model/medium/Reflectance.h"
 #include "scene/Defaults.h"
-#include "scene/Stages.h"
 
 #include <gtest/gtest.h>
 
@@ -95,38 +94,6 @@ TEST(DefaultTransfer, BloodIsTheGreatestMedianOfAortaAndHeart) {
   EXPECT_FALSE(describeScan(mr, others, all, {}).isKnee);
   const Segmentation empty = makeSegments({"liver", "aorta", "lung_left", "bone"});
   EXPECT_FALSE(describeScan(volume, empty, {true, false, true, true}, {}).blood);
-}
-
-/// Two lungs, with their medians, are transparent; together with a visible vessel they are not.
-TEST(DefaultTransfer, TransparentFocusHasNoVisibleSegment) {
-  const Grid grid = makeCenteredGrid({16, 10, 10}, {2.0, 2.0, 2.0});
-  const auto volume =
-      std::make_shared<VolumeInput>(VolumeInput{makeVolume<std::int16_t>(grid, [](const Vec3& p) {
-        return p.x() < 4 ? -850 : p.x() < 8 ? -700 : p.x() < 10 ? 40 : -800;
-      })});
-  LargeArray<std::uint8_t> labels;
-  for (std::int64_t i = 0; i < grid.voxelCount(); ++i)
-    labels.push_back(static_cast<std::uint8_t>(i % 16 < 12 ? 1 + (i % 16) / 4 : 0));
-  const auto segments = std::make_shared<SegmentsInput>(SegmentsInput{
-      Segmentation("s", grid, 1, labels,
-                   {{"a", "left", 1}, {"b", "right", 2}, {"c", "vessel", 3}, {"d", "empty", 4}})});
-  const auto hasVoxels = std::make_shared<std::vector<bool>>(findNonEmpty(segments));
-  const auto transfer =
-      std::make_shared<TransferChoice>(TransferChoice{makeRelativeTransfer(makeRamp(0, 1)), ""});
-  transfer->function.extinction =
-      ScalarFunction({{-500.0, ScalarFunction::Value(0.0)}, {0.0, ScalarFunction::Value(1.0)}});
-  const auto find = [&](const std::vector<std::string>& names) {
-    return findTransparentFocus(segments, hasVoxels, names, volume, transfer);
-  };
-  EXPECT_EQ(find({"left", "empty", "right"}), (TransparentFocus{{0, -850.0}, {1, -700.0}}));
-  const auto separated = separateSegments(
-      segments, std::make_shared<TransparentFocus>(find({"left", "right"})), volume);
-  const auto count = [](const SegmentStatistics& segment) { return segment.voxels; };
-  std::vector<std::int64_t> counts;
-  std::ranges::transform(separated->segmentation.statistics(), std::back_inserter(counts), count);
-  EXPECT_EQ(counts, (std::vector<std::int64_t>{200, 400, 400, 0})) << "a gap of 4 mm in the first";
-  EXPECT_EQ(find({"left", "vessel"}), TransparentFocus());
-  EXPECT_EQ(find({"empty"}), TransparentFocus());
 }
 
 /// Three tissues with overlapping values, and air: the scale is at their means within 5 %.

@@ -88,29 +88,6 @@ TEST(MaskShaping, AdjacentMasksHaveAVoxelOrAFaceInCommon) {
   EXPECT_FALSE(isAdjacent({-3, -7, -7}, {2, 2, 2})) << "one voxel apart";
 }
 
-/// The gap is measured along axes, also between masks that begin elsewhere; at least one voxel
-/// goes.
-TEST(MaskShaping, ContactIsRemovedUpToAGap) {
-  const Grid grid = makeCenteredGrid({41, 41, 41});
-  const auto crop = [&](const Vec3& lower, const Vec3& upper) {
-    const Vec3 size = upper - lower + Vec3::Ones();
-    Affine indexToWorld = grid.indexToWorld;
-    indexToWorld.translation() = lower;
-    return makeBoxMask(Grid(size.cast<std::int64_t>(), indexToWorld), lower, upper);
-  };
-  const Mask below = crop({-10, -10, -10}, {-5, -5, -5}), above = crop({-8, -10, -4}, {0, 0, 3});
-  const auto countLeft = [&](double gap) {
-    const Mask left = removeContact(below, above, gap);
-    EXPECT_EQ(left.count, left.countInside());
-    EXPECT_TRUE(left.contains({0, 0, 5})) << "beside the other mask";
-    return left.count;
-  };
-  constexpr std::int64_t layer = 4 * 6; // voxels of the contact
-  EXPECT_EQ(countLeft(0.5), 6 * 6 * 6 - layer);
-  EXPECT_EQ(countLeft(2.0), 6 * 6 * 6 - 2 * layer);
-  EXPECT_EQ(removeContact(below, crop({5, 5, 5}, {8, 8, 8}), 2.0).count, 6 * 6 * 6);
-}
-
 /// Step height, mm: range of distances from the visible surface's center to a sphere of `radius`.
 double measureStepHeight(const Mask& mask, double radius) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 20, 128, 128);

@@ -136,25 +136,6 @@ bool areAdjacent(const Mask& a, const Mask& b) {
   return false;
 }
 
-Mask removeContact(Mask mask, const Mask& other, double gap) {
-  const Size3 offset = findOffset(mask, other);
-  const Vec3 voxels = gap * mask.grid.spacing().cwiseInverse();
-  const Size3 reach = voxels.cast<std::int64_t>().cwiseMax(1);
-  const auto isNear = [&](const Size3& voxel) {
-    for (int axis = 0; axis < 3; ++axis)
-      for (std::int64_t step = -reach[axis]; step <= reach[axis]; ++step)
-        if (other.contains(voxel + step * Size3::Unit(axis)))
-          return true;
-    return false;
-  };
-  forEachVoxel({Size3::Zero(), mask.grid.size}, [&](const Size3& voxel, std::size_t i) {
-    if (mask.voxels[i] && isNear(voxel + offset))
-      mask.voxels[i] = 0;
-  });
-  mask.count = mask.countInside();
-  return mask;
-}
-
 Mask uniteMasks(std::vector<Mask> masks) {
   if (masks.size() == 1)
     return std::move(masks.front());

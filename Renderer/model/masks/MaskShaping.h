@@ -34,10 +34,6 @@ Size3 findOffset(const Mask& mask, const Mask& other);
 /// True if masks on the same lattice have a voxel, or a face of voxels, in common.
 bool areAdjacent(const Mask& a, const Mask& b);
 
-/// Removes voxels of a mask that are, along an axis, within `gap` mm or one voxel of `other`, a
-/// mask on the same lattice.
-Mask removeContact(Mask mask, const Mask& other, double gap);
-
 /// Union of one or more masks on the same label map's lattice.
 Mask uniteMasks(std::vector<Mask> masks);
 
