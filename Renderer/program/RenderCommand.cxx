@@ -99,7 +99,7 @@ void addClip(Json& json, const PreparedScene& scene, const std::optional<FocusRe
     json["contextRemoved"] = *focus->contextRemoved;
 }
 
-/// Adds what was done to the volume, and what small lesions lose by it.
+/// Adds what was done to the volume, and in CT what small lesions lose by it.
 void addSmoothing(Json& json, const PreparedScene& scene) {
   const auto smoothing = scene.smoothing();
   if (!smoothing)
@@ -114,6 +114,8 @@ void addSmoothing(Json& json, const PreparedScene& scene) {
   if (!smoothing->isApplied())
     return;
   entry["islands"] = {{"count", smoothing->islands}, {"mm3", smoothing->islandVolume}};
+  if (!smoothing->isHounsfield)
+    return;
   for (const auto& [diameter, percent] : lesionContrasts)
     entry["lesionContrast"][concat(diameter, " mm")] = 0.01 * percent;
 }

@@ -214,11 +214,13 @@ std::string describe(const SmoothingReport& report) {
   if (report.islands > 0)
     line << ", " << report.islands << " islands of opacity removed ("
          << toString(report.islandVolume, 3) << " mm^3)";
-  line << "; lesions";
-  for (const LesionContrast& lesion : lesionContrasts)
-    line << (&lesion == lesionContrasts ? " of " : ", ") << lesion.diameter << " mm keep "
-         << lesion.percent << " %";
-  line << " of their contrast (measured on one CT)";
+  if (report.isHounsfield) {
+    line << "; lesions";
+    for (const LesionContrast& lesion : lesionContrasts)
+      line << (&lesion == lesionContrasts ? " of " : ", ") << lesion.diameter << " mm keep "
+           << lesion.percent << " %";
+    line << " of their contrast (measured on one CT)";
+  }
   return line.str();
 }
 

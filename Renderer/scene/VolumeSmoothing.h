@@ -19,9 +19,9 @@ struct SmoothingReport {
   bool isApplied() const { return strength > 0.0; }
 };
 
-/// Contrast that spheres in a liver have after smoothing, percent of that before. Measured by
-/// SmoothingBenchmark: CT of 33 HU noise, voxels of 0.94 x 0.94 x 2.5 mm, contrasts of -20, -40 and
-/// 60 HU.
+/// Contrast that spheres in a liver have after smoothing, percent of that before. Measured, only
+/// for CT, by SmoothingBenchmark: CT of 33 HU noise, voxels of 0.94 x 0.94 x 2.5 mm, contrasts of
+/// -20, -40 and 60 HU.
 struct LesionContrast {
   int diameter; ///< mm
   int percent;

@@ -10,12 +10,12 @@
 namespace fenestra::SmoothingCommandTests {
 namespace {
 
-/// Folder with a noisy CT of a box in air.
+/// Folder with a noisy CT of a box in air, and its values as those of an MR.
 class SmoothingCommand : public ::testing::Test {
 protected:
   SmoothingCommand() {
     std::mt19937 random(1);
-    std::string noisy, clean;
+    std::string noisy, clean, mr;
     for (int i = 0; i < edge * edge * edge; ++i) {
       const auto isInside = [](int x) { return x >= 3 && x < edge - 3; };
       const bool isBox =
@@ -26,10 +26,12 @@ protected:
       const bool isIsland = i == edge * edge + edge + 1;
       append(isIsland ? 1200 : isBox ? 60 : -1000, clean);
       append((isIsland ? 1200 : isBox ? 60 : -1000) + noise, noisy);
+      append((isIsland ? 2200 : isBox ? 1060 : 100) + noise, mr);
     }
     const NrrdText text{.sizes = "20 20 20"};
     folder.write("noisy.nrrd", text.encode(noisy));
     folder.write("clean.nrrd", text.encode(clean));
+    folder.write("mr.nrrd", text.encode(mr));
   }
 
   Outcome render(const Arguments& arguments, const std::string& volume = "noisy.nrrd",
@@ -86,6 +88,18 @@ TEST_F(SmoothingCommand, AllOutputsShowTheMediumOfTheDisplayImage) {
   EXPECT_GT(smoothing.at("strength"), 10.0);
   EXPECT_EQ(smoothing.at("method"), "non-local means");
   EXPECT_EQ(smoothing.at("lesionContrast").size(), 3U);
+}
+
+TEST_F(SmoothingCommand, ContrastOfLesionsIsOnlyThatMeasuredInCt) {
+  const auto renderText = [&](const std::string& volume) {
+    render({"--volume-smoothing", "auto", "-o", "a.png", "--stats-json", "s.json"}, volume);
+    EXPECT_GT(readStats("s.json").at("volumeSmoothing").at("strength"), 0.0) << volume;
+    return readBytes(folder / "a.png");
+  };
+  EXPECT_EQ(renderText("mr.nrrd").find("47 %"), std::string::npos);
+  EXPECT_FALSE(readStats("s.json").at("volumeSmoothing").contains("lesionContrast"));
+  EXPECT_NE(renderText("noisy.nrrd").find("47 %"), std::string::npos);
+  EXPECT_DOUBLE_EQ(readStats("s.json").at("volumeSmoothing").at("lesionContrast").at("4 mm"), 0.47);
 }
 
 TEST_F(SmoothingCommand, VolumeWithoutNoiseIsUnchanged) {
