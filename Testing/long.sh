@@ -22,7 +22,7 @@
 #   boundary      the boundary of the clipping surface on subpixel rays
 # record measures what README and pages cite, in about an hour on two idle cores, or parts of it (matrix, mutations,
 # denoiser, efficiency; figures only if named), and writes Testing/Report and the generated parts of the pages. Commit
-# sources before. FENESTRA_BUILD selects a finished build.
+# sources before. FENESTRA_BUILD selects a configured build; its programs are built anew.
 # Logs and tables are in build/report.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
@@ -259,10 +259,8 @@ stage_fuzz() {
 # measure_record [PART...]: measures with one build and stores the results.
 measure_record() {
   local folder=${FENESTRA_BUILD:-$top/build}
-  if [ -z "${FENESTRA_BUILD:-}" ]; then
-    build release "${all_tests[@]}"
-    cmake --build "$folder" --target MutationTests DenoiserBenchmark
-  fi
+  [ -n "${FENESTRA_BUILD:-}" ] || build release "${all_tests[@]}"
+  cmake --build "$folder" --target fenestra MatrixTests MutationTests DenoiserBenchmark EfficiencyBenchmark
   rm -rf "$logs/record"
   bash "$top/Testing/Report/measure.sh" "$folder" "$logs/record" "$@" || say "not everything was measured (see above)"
   bash "$top/Testing/evidence.sh" store "$logs/record"
