@@ -249,6 +249,19 @@ TEST_F(RenderCommand, LightsAsFileOrInlineJsonGiveTheSameImage) {
   EXPECT_EQ(file.channels, render({"--lights=" + longerThanPaths}).channels);
 }
 
+TEST_F(RenderCommand, DefaultLightsSuitCutOrgansWithAFocus) {
+  const auto renderLights = [&](Arguments options, const std::string& name) {
+    if (!name.empty())
+      options.insert(options.end(), {"--lights", name});
+    return render(options).channels;
+  };
+  const Arguments focus = {"--segmentation", "segments.seg.nrrd", "--focus", "A"};
+  EXPECT_EQ(renderLights({}, ""), renderLights({}, "theatre"));
+  EXPECT_NE(renderLights({}, ""), renderLights({}, "theatre-wet"));
+  EXPECT_EQ(renderLights(focus, ""), renderLights(focus, "theatre-wet"));
+  EXPECT_NE(renderLights(focus, ""), renderLights(focus, "theatre"));
+}
+
 TEST_F(RenderCommand, SamplingIsSelectedAndReported) {
   const Image stratified = render({"--stats-json", "s.json"});
   EXPECT_EQ(readStats("s.json")["sampling"], "stratified");

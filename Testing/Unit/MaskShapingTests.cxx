@@ -74,18 +74,43 @@ TEST(MaskShaping, UnionCountsVoxelsOfBothMasks) {
   EXPECT_EQ(uniteMasks({a, a}).count, a.count);
 }
 
+/// Also if their grids are cropped to them, as readers do.
 TEST(MaskShaping, AdjacentMasksHaveAVoxelOrAFaceInCommon) {
+  const auto makeCroppedBox = [](const Vec3& lower, const Vec3& upper) { // voxels at whole numbers
+    const Size3 size = (upper - lower).array().round().cast<std::int64_t>() + 1;
+    Affine indexToWorld = Affine::Identity();
+    indexToWorld.translation() = lower;
+    return makeBoxMask({size, indexToWorld}, lower, upper);
+  };
   const Grid grid = makeCenteredGrid({41, 41, 41}); // voxels at whole numbers
-  const Mask a = makeBoxMask(grid, {-10, -10, -10}, {-5, -5, -5});
+  const Vec3 first(-10, -10, -10), last(-5, -6, -7);
   const auto isAdjacent = [&](const Vec3& lower, const Vec3& upper) {
-    const Mask b = makeBoxMask(grid, lower, upper);
-    EXPECT_EQ(areAdjacent(a, b), areAdjacent(b, a));
-    return areAdjacent(a, b);
+    const Mask a = makeBoxMask(grid, first, last), b = makeBoxMask(grid, lower, upper);
+    const Mask croppedA = makeCroppedBox(first, last), croppedB = makeCroppedBox(lower, upper);
+    EXPECT_EQ(croppedB.count, b.count);
+    EXPECT_EQ(croppedB.count, croppedB.grid.voxelCount());
+    const bool result = areAdjacent(a, b);
+    for (const auto& [one, other] : {std::pair(&a, &b), std::pair(&a, &croppedB),
+                                     std::pair(&croppedA, &b), std::pair(&croppedA, &croppedB)}) {
+      EXPECT_EQ(areAdjacent(*one, *other), result);
+      EXPECT_EQ(areAdjacent(*other, *one), result);
+    }
+    return result;
   };
   EXPECT_TRUE(isAdjacent({-7, -7, -7}, {2, 2, 2}));
-  EXPECT_TRUE(isAdjacent({-4, -7, -7}, {2, 2, 2})) << "face";
-  EXPECT_FALSE(isAdjacent({-4, -4, -7}, {2, 2, 2})) << "edge";
-  EXPECT_FALSE(isAdjacent({-3, -7, -7}, {2, 2, 2})) << "one voxel apart";
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 lower(-7, -7, -7), upper(2, 2, 2);
+    lower[axis] = last[axis] + 1.0;
+    EXPECT_TRUE(isAdjacent(lower, upper)) << "face of axis " << axis;
+    Vec3 edge = lower;
+    edge[(axis + 1) % 3] = last[(axis + 1) % 3] + 1.0;
+    EXPECT_FALSE(isAdjacent(edge, upper)) << "edge of axis " << axis;
+    lower[axis] += 1.0;
+    EXPECT_FALSE(isAdjacent(lower, upper)) << "one voxel apart along axis " << axis;
+    upper[axis] = 15.0;
+    lower[axis] = 12.0;
+    EXPECT_FALSE(isAdjacent(lower, upper)) << "far apart along axis " << axis;
+  }
 }
 
 /// Step height, mm: range of distances from the visible surface's center to a sphere of `radius`.

@@ -218,6 +218,11 @@ protected:
     for (std::size_t i = halves.size() / 2; i < halves.size(); ++i)
       halves[i] = static_cast<std::uint8_t>(2 * halves[i]);
     writeFile(folder / "halves.nrrd", halves, geometry);
+    std::vector<std::uint8_t> thirds = phantom.label.voxels; // 1, 3 and 2, along z
+    for (std::size_t i = 0; i < thirds.size(); ++i)
+      thirds[i] = static_cast<std::uint8_t>(
+          thirds[i] * std::array{1, 3, 2}[std::min<std::size_t>(2, 3 * i / thirds.size())]);
+    writeFile(folder / "thirds.nrrd", thirds, geometry);
     count = phantom.label.count;
     request.input = folder / "ct.nrrd";
     request.segmentation = folder / "labels.nrrd";
@@ -291,6 +296,20 @@ TEST_F(OrganMarginScene, AdjacentSegmentsAreOneOrgan) {
   ASSERT_EQ(halves.margins().size(), 1U);
   EXPECT_EQ(halves.margins()[0].volume, whole.margins()[0].volume);
   EXPECT_EQ(halves.focus()->count, whole.focus()->count);
+}
+
+/// Also if only the last of three connects the others.
+TEST_F(OrganMarginScene, ChainsOfAdjacentSegmentsAreOneOrgan) {
+  const PreparedScene whole(request);
+  request.segmentation = folder / "thirds.nrrd";
+  request.materialChanges.clear();
+  request.focus = {"1", "2", "3"};
+  const PreparedScene chain(request);
+  ASSERT_EQ(chain.margins().size(), 1U);
+  EXPECT_EQ(chain.margins()[0].volume, whole.margins()[0].volume);
+  EXPECT_EQ(chain.focus()->count, whole.focus()->count);
+  request.focus = {"1", "2"};
+  EXPECT_EQ(PreparedScene(request).margins().size(), 2U) << "apart";
 }
 
 TEST_F(OrganMarginScene, OnlyForCt) {
