@@ -182,9 +182,10 @@ SmoothedVolume dropIslands(const VolumeHandle& smoothed, const Handle<TransferCh
   const std::optional<double> onset = findOnset(transfer->function);
   if (!onset)
     return {};
-  Islands islands = findIslands(smoothed->volume, *onset, *transfer->islands);
+  RunPredicate isPreserved;
   if (focus->mask)
-    std::erase_if(islands.runs, FocusOverlap(*focus->mask, smoothed->volume.grid));
+    isPreserved = FocusOverlap(*focus->mask, smoothed->volume.grid);
+  const Islands islands = findIslands(smoothed->volume, *onset, *transfer->islands, isPreserved);
   if (islands.runs.empty())
     return {};
   SmoothedVolume result{*smoothed, {.islands = islands.count, .islandVolume = islands.volume}};

@@ -47,7 +47,7 @@ SmoothedVolume smoothVolume(const VolumeHandle& volume, const SmoothingRequest& 
                             Modality modality);
 
 /// Removes islands of opacity that are smaller than TransferChoice::islands, which must be set,
-/// except what is in the focus.
+/// except those with a voxel in the focus.
 SmoothedVolume dropIslands(const VolumeHandle& volume, const Handle<TransferChoice>& transfer,
                            const FocusHandle& focus);
 

@@ -139,6 +139,17 @@ TEST_F(SmoothingCommand, IslandsOfOpacityAreRemovedWithTheNoise) {
   const nlohmann::json smoothing = readStats("s.json").at("volumeSmoothing");
   EXPECT_EQ(smoothing.at("islands").at("count"), 1);
   EXPECT_EQ(smoothing.at("islands").at("mm3"), 1.0);
+
+  std::string labels(edge * edge * edge, '\0'); // a focus of 2^3 voxels
+  for (const int i : {0, 1, 2, 3, 4, 5, 6, 7})
+    labels[static_cast<std::size_t>(1 + i % 2 + edge * (1 + i / 2 % 2 + edge * (1 + i / 4)))] = 1;
+  folder.write("labels.nrrd", NrrdText{.sizes = "20 20 20", .type = "uint8"}.encode(labels));
+  render({"--volume-smoothing", "auto", "--transfer", "{" + knots + R"(, "islands": 9})",
+          "--segmentation", "labels.nrrd", "--focus", "1", "-o", "a.png", "--stats-json",
+          "s.json"});
+  const nlohmann::json focused = readStats("s.json").at("volumeSmoothing");
+  EXPECT_EQ(focused.at("islands").at("count"), 0);
+  EXPECT_EQ(focused.at("islands").at("mm3"), 0.0);
 }
 
 TEST_F(SmoothingCommand, ResumedRenderShowsTheMediumOfItsCheckpoint) {

@@ -78,6 +78,24 @@ TEST(Islands, AreSmallerThanAVolumeInCubicMillimeters) {
   EXPECT_EQ(std::ranges::count(voxels, 100.5F), 8 + 27);
 }
 
+/// A block of 2 x 2 x 2 voxels and one of 3 x 1 x 1: the first is preserved as a whole.
+TEST(Islands, WithAPreservedRunRemainWhole) {
+  Volume volume =
+      makeVoxels<std::int16_t>(makeScaledGrid({10, 6, 6}, Vec3::Ones()), [](const Size3& v) {
+        const bool isBlock = (v.array() >= 1).all() && (v.array() <= 2).all();
+        const bool isRow = v.x() >= 5 && v.x() <= 7 && v.y() == 1 && v.z() == 1;
+        return isBlock || isRow || v.z() == 5 ? 300.0 : 0.0;
+      });
+  const std::int64_t voxel = linearIndex({2, 2, 2}, volume.grid.size);
+  const Islands islands = findIslands(volume, 100.0, 9.0, [=](const RunOfIsland& run) {
+    return run.begin <= voxel && voxel < run.end;
+  });
+  EXPECT_EQ(islands.count, 1);
+  EXPECT_EQ(islands.volume, 3.0);
+  removeIslands(volume, islands, 100.0);
+  EXPECT_EQ(std::ranges::count(voxelsOf<std::int16_t>(volume), 300), 60 + 8);
+}
+
 TEST(Islands, OfIntegersAreLoweredToTransparentValues) {
   Volume volume =
       makeVoxels<std::int16_t>(makeScaledGrid({3, 3, 6}, Vec3::Ones()), [](const Size3& v) {

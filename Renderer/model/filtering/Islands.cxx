@@ -25,16 +25,23 @@ public:
         connectRow(y, z);
   }
 
-  /// Groups of less than `most` voxels, but not the largest; `voxelVolume` in mm^3.
-  Islands findSmall(double most, double voxelVolume) {
+  /// Groups of less than `most` voxels, but neither the largest nor those with a preserved run;
+  /// `voxelVolume` in mm^3.
+  Islands findSmall(double most, double voxelVolume, const RunPredicate& isPreserved) {
     std::vector<std::int64_t> sizes(m_runs.size(), 0);
     for (std::size_t i = 0; i < m_runs.size(); ++i)
       sizes[findRoot(i)] += m_runs[i].end - m_runs[i].begin;
     const auto largest = static_cast<std::size_t>(std::ranges::max_element(sizes) - sizes.begin());
+    std::vector<bool> isIsland(m_runs.size());
+    for (std::size_t root = 0; root < m_runs.size(); ++root)
+      isIsland[root] = root != largest && static_cast<double>(sizes[root]) < most;
+    for (std::size_t i = 0; isPreserved && i < m_runs.size(); ++i)
+      if (const std::size_t root = findRoot(i); isIsland[root] && isPreserved(m_runs[i]))
+        isIsland[root] = false;
     Islands islands;
     for (std::size_t i = 0; i < m_runs.size(); ++i) {
       const std::size_t root = findRoot(i);
-      if (static_cast<double>(sizes[root]) >= most || root == largest)
+      if (!isIsland[root])
         continue;
       islands.runs.push_back(m_runs[i]);
       islands.volume += static_cast<double>(m_runs[i].end - m_runs[i].begin) * voxelVolume;
@@ -99,11 +106,13 @@ private:
 
 } // namespace
 
-Islands findIslands(const Volume& volume, double onset, double largest) {
+Islands findIslands(const Volume& volume, double onset, double largest,
+                    const RunPredicate& isPreserved) {
   const double voxelVolume = std::abs(volume.grid.indexToWorld.linear().determinant());
   return std::visit(
       [&](const auto& voxels) {
-        return Runs(volume.grid.size, voxels, onset).findSmall(largest / voxelVolume, voxelVolume);
+        return Runs(volume.grid.size, voxels, onset)
+            .findSmall(largest / voxelVolume, voxelVolume, isPreserved);
       },
       volume.voxels);
 }

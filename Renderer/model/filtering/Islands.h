@@ -4,6 +4,7 @@
 
 #include "model/volume/Volume.h"
 
+#include <functional>
 #include <vector>
 
 namespace fenestra {
@@ -11,6 +12,8 @@ namespace fenestra {
 struct RunOfIsland {
   std::int64_t begin, end; ///< voxels of one row, by linear index
 };
+
+using RunPredicate = std::function<bool(const RunOfIsland&)>;
 
 /// Voxels of all islands, in ascending order.
 struct Islands {
@@ -20,8 +23,10 @@ struct Islands {
 };
 
 /// Groups of voxels above `onset`, connected by faces, edges or corners, whose volume is less than
-/// `largest` mm^3. The greatest group is none, so that a small subject does not vanish.
-Islands findIslands(const Volume& volume, double onset, double largest);
+/// `largest` mm^3. The greatest group is none, so that a small subject does not vanish, nor is any
+/// with a preserved run.
+Islands findIslands(const Volume& volume, double onset, double largest,
+                    const RunPredicate& isPreserved = {});
 
 /// Lowers the voxels of islands to `onset`, rounded down for integers. `volume`: of the same grid.
 void removeIslands(Volume& volume, const Islands& islands, double onset);
