@@ -100,8 +100,7 @@ std::optional<std::string> chooseTransferPreset(const Volume& volume, const Scan
   }
   if (volume.modality == Modality::us)
     return "us-fetal";
-  const bool isMr = volume.modality == Modality::mr || !content.brain.empty() ||
-                    (!volume.modality && hasAir(volume));
+  const bool isMr = volume.modality == Modality::mr || !content.brain.empty() || hasAir(volume);
   if (isMr)
     return content.isKnee ? "mr-knee" : "mr-anatomy";
   return std::nullopt;

@@ -90,7 +90,20 @@ TEST(DefaultTransfer, BloodIsTheGreatestMedianOfAortaAndHeart) {
   EXPECT_FALSE(describeScan(volume, others, all, {"lung_left", "bone"}).isLungFocus);
   EXPECT_FALSE(describeScan(volume, others, all, {}).blood);
   const Volume mr = makeVolume<std::int16_t>(grid, [](const Vec3& p) { return 10.0 * p.x(); });
-  EXPECT_TRUE(describeScan(mr, makeSegments({"patella", "a", "b", "c"}), all, {}).isKnee);
+  for (const char* part : {"patella", "patellar_cartilage", "meniscus_medial", "cruciate_anterior"})
+    EXPECT_TRUE(describeScan(mr, makeSegments({"a", part, "b", "c"}), all, {}).isKnee) << part;
+  for (const char* code : {"SCT^64234005", "SCT^244564004"}) {
+    std::vector<SegmentInfo> coded = {{"a", "a", 1}, {"b", "b", 2}};
+    coded[1].type = code;
+    EXPECT_TRUE(describeScan(mr, Segmentation("test", grid, 1, Segmentation::Labels(labels), coded),
+                             {true, true}, {})
+                    .isKnee)
+        << code;
+  }
+  EXPECT_FALSE(
+      describeScan(mr, makeSegments({"patella", "a", "b", "c"}), {false, true, true, true}, {})
+          .isKnee)
+      << "empty";
   EXPECT_FALSE(describeScan(mr, others, all, {}).isKnee);
   const Segmentation empty = makeSegments({"liver", "aorta", "lung_left", "bone"});
   EXPECT_FALSE(describeScan(volume, empty, {true, false, true, true}, {}).blood);

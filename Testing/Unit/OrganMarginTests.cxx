@@ -178,7 +178,7 @@ Phantom makeLung(double noise, const std::optional<Lesion>& lesion = {}) {
 }
 
 TEST(OrganMargin, RemovesTheChestWallFromLungsAndPreservesNodules) {
-  for (const double noise : {20.0, 60.0}) {
+  for (const double noise : {20.0, 90.0}) {
     const Phantom phantom = makeLung(noise);
     const OrganMargin margin = findOrganMargin(phantom.label, phantom.volume);
     ASSERT_TRUE(margin.isApplied) << noise;
