@@ -22,7 +22,7 @@
 #   boundary      the boundary of the clipping surface on subpixel rays
 # record measures what README and pages cite, in about an hour on two idle cores, or parts of it (matrix, mutations,
 # denoiser, efficiency; figures only if named), and writes Testing/Report and the generated parts of the pages. Commit
-# sources before. FENESTRA_BUILD selects a configured build; its programs are built anew.
+# sources before. FENESTRA_BUILD selects a configured build, in which the programs are built.
 # Logs and tables are in build/report.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
