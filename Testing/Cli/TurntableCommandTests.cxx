@@ -252,7 +252,7 @@ TEST_F(TurntableCommand, StopsDuringTheComputationOfASurface) {
   Arguments arguments =
       makeArguments({"--output", "turn.exr", "--samples", "1", "--clip-boundary", "exact",
                      "--degrees", "90", "--stats-json", "all.json", "--progress", "xml"});
-  *std::find(arguments.begin(), arguments.end(), "16x16") = "1024x1024"; // five surfaces per frame
+  *std::find(arguments.begin(), arguments.end(), "16x16") = "512x512"; // five surfaces per frame
   Process process(arguments, folder.path());
   ASSERT_TRUE(process.waitForOutput("frame 2 of 4"));
   const double frame = process.cpuSeconds(); // mostly spent on surfaces
