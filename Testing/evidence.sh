@@ -12,21 +12,20 @@ record=$report/evidence.csv
 
 # list_sources NAME: prints the folders and files of an entry, as globs.
 list_sources() {
-  local masks='Renderer/model/masks Renderer/model/filtering'
   local transport='Renderer/base Renderer/model/volume Renderer/model/medium Renderer/model/camera Renderer/model/lights
 Renderer/image Renderer/clip Renderer/integrator'
   local matrix='Testing/Oracle Testing/Statistical/Comparison.* Testing/Statistical/Matrix*.* Testing/Statistical/Significance.*'
   local benchmark='Testing/Benchmarks/References.cxx Testing/Benchmarks/Scenes.cxx'
   case $1 in
     matrix) echo "$transport $matrix" ;;
-    mutations) echo "$transport $masks $matrix Testing/Statistical/MutationTests.cxx Testing/Statistical/ErrorRatio.* \
-Testing/Statistical/Mutations/mutations.json" ;;
+    mutations) echo "$transport $matrix Renderer/model/masks Renderer/model/filtering/SmoothingRequest.h \
+Testing/Statistical/MutationTests.cxx Testing/Statistical/ErrorRatio.* Testing/Statistical/Mutations/mutations.json" ;;
     denoiser) echo "$transport Renderer/denoise $benchmark Testing/Benchmarks/DenoiserBenchmark.cxx \
 Testing/Benchmarks/denoiser-scenes.txt" ;;
     efficiency) echo "$transport $benchmark Testing/Benchmarks/Baselines.h Testing/Benchmarks/Curve.cxx \
 Testing/Benchmarks/Modes.cxx Testing/Benchmarks/scenes.txt" ;;
-    figures) echo "$transport $masks Renderer/metrics Renderer/phantoms Renderer/scene Resources/figures/*.sh Resources/phantoms \
-Resources/transfer Resources/lights" ;;
+    figures) echo "$transport Renderer/model/masks Renderer/model/filtering Renderer/metrics Renderer/phantoms Renderer/scene \
+Resources/figures/*.sh Resources/phantoms Resources/transfer Resources/lights" ;;
     *) die "$1: no such entry" ;;
   esac
 }
