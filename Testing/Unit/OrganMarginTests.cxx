@@ -168,6 +168,25 @@ TEST(OrganMargin, IsNotAppliedToSmallOrMixedSegments) {
   EXPECT_FALSE(findOrganMargin(airy.label, airy.volume).isApplied) << "fat";
 }
 
+/// A cortex of 3 mm belongs to its bone; ribs over a tenth of an organ do not.
+TEST(OrganMargin, BonesRemainWhole) {
+  const auto isApplied = [](const auto& isBone) {
+    Phantom phantom = makePhantom(10.0);
+    auto& voxels = std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
+    for (std::int64_t i = 0; i < phantom.label.grid.voxelCount(); ++i) {
+      const Size3& size = phantom.label.grid.size;
+      const Size3 voxel(i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y()));
+      const Vec3 p = phantom.label.grid.indexToWorld * voxel.cast<double>();
+      if (const double distance = computeDistance(p);
+          distance > -3.0 && distance < 1.0 && isBone(p))
+        voxels[static_cast<std::size_t>(i)] = 500;
+    }
+    return findOrganMargin(phantom.label, phantom.volume).isApplied;
+  };
+  EXPECT_FALSE(isApplied([](const Vec3&) { return true; }));
+  EXPECT_TRUE(isApplied([](const Vec3& p) { return p.x() > 0.9 * radii.x(); }));
+}
+
 /// The phantom as a lung at -800 HU, on its side of `fat` in soft tissue.
 Phantom makeLung(double noise, const std::optional<Lesion>& lesion = {}) {
   Phantom phantom = makePhantom(noise / 4.0, lesion);

@@ -17,6 +17,7 @@ constexpr double maxDeviation = 60.0;     ///< HU, of one tissue
 constexpr double maxAirDeviation = 120.0; ///< HU, of lung: more blood lies in its lower parts
 constexpr float maxDepth = 6.0F;          ///< mm below the surface, of removed voxels
 constexpr double maxRemoved = 1.0 / 3.0;  ///< fraction of the voxels; more: not this organ's label
+constexpr double mostBright = 1.0 / 3.0;  ///< of what is removed; more: cortex of a bone
 constexpr double deviations = 3.5;        ///< robust standard deviations that belong to the tissue
 constexpr double leastDifference = 25.0;  ///< HU; differences within an organ
 constexpr double tested = 1.0;            ///< mm below the new surface, where it must be organ
@@ -217,7 +218,7 @@ public:
       front.pop_back();
       removeBeside(voxel, linearIndex(voxel, m_grid.size));
     }
-    return removed;
+    return isSoft && hasBrightShell(removed, values) ? Marks() : removed;
   }
 
   /// Distances, mm, from the segment's surface voxels to the nearest voxel that is kept; sorted.
@@ -243,6 +244,16 @@ private:
       if (m_inside[i] && m_depth[i] >= static_cast<float>(deep))
         selected.push_back(from[i]);
     return selected;
+  }
+
+  /// True if much of what would be removed is brighter than the tissue, as the cortex of a bone is.
+  bool hasBrightShell(const Marks& removed, const TissueRange& values) const {
+    std::size_t all = 0, bright = 0;
+    for (std::size_t i = 0; i < removed.size(); ++i) {
+      all += removed[i];
+      bright += removed[i] && static_cast<double>(m_values[i]) > values.median + values.difference;
+    }
+    return static_cast<double>(bright) > mostBright * static_cast<double>(all);
   }
 
   /// True if the volume is of the organ `tested` mm below the face between a voxel and `beyond`.

@@ -9,8 +9,8 @@
 namespace fenestra {
 
 struct OrganMargin {
-  /// False: the organ is too small or not of one tissue, voxels are 3 mm or thicker, or more than a
-  /// third would be removed. `kept` is then the segment.
+  /// False: the organ is too small, not of one tissue, or a bone; voxels are 3 mm or thicker; or
+  /// more than a third would be removed. `kept` is then the segment.
   bool isApplied = false;
   Mask kept;                    ///< the segment without the removed voxels, on its grid
   double volume = 0.0;          ///< removed, mm^3
@@ -25,6 +25,7 @@ struct OrganMargin {
 /// (neighboring organs have a few percent inside).
 /// Applies only if at least 500 voxels are deeper than 8 mm, and their median is above -30 HU with
 /// a robust standard deviation of at most 60 HU, or below -500 HU (lung) with at most 120 HU.
+/// Bones are excluded: more than a third of what would be removed is brighter than their inside.
 /// `volume`: CT, with or without noise. Time and memory grow with the mask's grid.
 OrganMargin findOrganMargin(const Mask& segment, const Volume& volume);
 
