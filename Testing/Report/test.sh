@@ -20,7 +20,7 @@ tail -n +2 "$top/Testing/Report/evidence.csv" | while IFS=, read -r name _; do
 done
 
 cd "$work"
-mkdir -p Renderer/{base,model,image,clip,integrator} Resources Testing/{Oracle,Report}
+mkdir -p Renderer/{base,model/{volume,medium,camera,lights},image,clip,integrator} Resources Testing/{Oracle,Report}
 cp "$top/Resources/setup.sh" Resources
 cp "$top/Testing/evidence.sh" Testing
 cp "$top"/Testing/Report/{README.md,efficiency.csv,peers.csv} Testing/Report
@@ -39,7 +39,7 @@ double step(double x) {
 CODE
 }
 write_source
-for folder in Renderer/{base,model,image,clip} Testing/Oracle; do
+for folder in Renderer/{base,model/{volume,medium,camera,lights},image,clip} Testing/Oracle; do
   echo 'int x;' >$folder/Other.cxx
 done
 git init -q
@@ -87,8 +87,8 @@ if store_entry "trial-$commit"; then fail 'a trial is stored'; fi
 if store_entry "${commit//[0-9]/0}"; then fail 'an entry of an unknown commit is stored'; fi
 store_entry "$(git rev-parse HEAD)-dirty" || fail "changes elsewhere prevent storing: $(cat log.txt)"
 is_fresh || fail 'an entry of the current commit is stale'
-git mv "$source" Renderer/model/Step.cxx
+git mv "$source" Renderer/model/volume/Step.cxx
 is_fresh || fail 'a moved source is stale'
-echo 'int y;' >Renderer/model/New.cxx
+echo 'int y;' >Renderer/model/medium/New.cxx
 ! is_fresh || fail 'a new source leaves an entry fresh'
 echo 'Entries are stale if and only if their sources have changed.'
