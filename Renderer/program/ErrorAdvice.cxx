@@ -14,7 +14,8 @@ constexpr auto adviceTable = [] {
   using enum ErrorCode;
   return std::to_array<std::pair<ErrorCode, std::string_view>>({
       {ambiguousPreset, "choose one with --preset"},
-      {ambiguousSegmentation, "choose one with --segmentation, by name or id"},
+      {ambiguousSegmentation,
+       "choose one with --segmentation, by name or id, or a --focus that only one has"},
       {ambiguousVolume, "choose one with --volume, by name, id or number"},
       {angleOfOrthographicCamera, "use --scale, or add --projection perspective"},
       {conflictingLabels, "remove --labels"},

@@ -363,6 +363,9 @@ std::string formatInspection(const Inspection& inspection) {
     text +=
         formatSection(refused ? "It would use, as far as can be determined" : "A render would use",
                       formatRender(use));
+  text += formatSection("Example", join(inspection["examples"], "", [](const Json& command) {
+                          return "  " + toOneLine(command) + "\n"; // unwrapped, to be copied
+                        }));
   return text + formatSection("Warnings", formatList(inspection["warnings"])) +
          formatSection("Ignored", formatList(inspection["ignored"]));
 }
@@ -382,7 +385,8 @@ const Option inspectTable[] = {
      ValueSpec::choice({"auto", "bar", "xml", "none"})},
     {"json", "", inspectGroup,
      "Print one JSON document: volumes, segmentations, volumeRenderings, volumeProperties, rois, "
-     "views, cameras, transforms, series, others; materials (the library); render (what it would "
+     "views, cameras, transforms, series, others; materials (the library); examples (commands); "
+     "render (what it would "
      "use), refused (why it would fail, else null), warnings, ignored; units mm, RAS, ml"},
 };
 
@@ -404,7 +408,7 @@ const CommandSyntax& inspectSyntax() {
       "Lists what an input contains, what a render would use, and what it would ignore and why.",
       {{"INPUT",
         "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), label map, "
-        "segmentation (.seg.nrrd) or DICOM folder"}},
+        "segmentation (.seg.nrrd), folder of masks or DICOM folder"}},
       inspectTable,
       {},
       "List what an input contains and what a render would use",

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 namespace fenestra {
 namespace {
@@ -56,6 +57,22 @@ std::vector<SegmentInfo> selectFocus(const OptionValues& given,
   return selected.empty() ? segments : selected;
 }
 
+InputChoice makeChoice(const OptionValues& given) {
+  return {given.text("volume"), given.text("segmentation"), given.text("labels")};
+}
+
+/// Segments, by id, that have a voxel in the segmentation.
+std::vector<SegmentInfo> selectNonEmpty(std::vector<SegmentInfo> segments,
+                                        const Segmentation& segmentation) {
+  std::set<std::string> ids;
+  const std::vector<SegmentStatistics> statistics = segmentation.statistics();
+  for (std::size_t i = 0; i < statistics.size(); ++i)
+    if (statistics[i].voxels > 0)
+      ids.insert(segmentation.segments()[i].id);
+  std::erase_if(segments, [&](const SegmentInfo& one) { return !ids.contains(one.id); });
+  return segments;
+}
+
 OrganPreset choosePreset(const OptionValues& given, const Input& input,
                          const std::optional<SegmentNames>& names) {
   const std::string name = given.word("preset");
@@ -71,8 +88,12 @@ OrganPreset choosePreset(const OptionValues& given, const Input& input,
   std::vector<OrganPreset> presets;
   for (const std::string& own : listBuiltinPresets("presets"))
     presets.push_back(findOrganPreset(own));
+  const std::vector<SegmentInfo> candidates = selectFocus(given, names->segments);
+  const auto listNonEmpty = [&] {
+    return selectNonEmpty(candidates, input.segments(makeChoice(given)).segmentation);
+  };
   return findMatchingPreset(
-      presets, selectFocus(given, names->segments), names->source, [&](Modality modality) {
+      presets, candidates, names->source, listNonEmpty, [&](Modality modality) {
         return isPlausibleModality(modality, input.volume(given.text("volume")).volume);
       });
 }
@@ -166,9 +187,7 @@ PresetOptions mergePreset(const OptionValues& given, const Input& input) {
   PresetOptions result{given};
   const bool givenFocus = given.has("focus");
   const bool byNames = given.text("preset") == "auto" || !givenFocus;
-  const auto names = byNames ? input.segmentNames({given.text("volume"), given.text("segmentation"),
-                                                   given.text("labels")})
-                             : std::nullopt;
+  const auto names = byNames ? input.segmentNames(makeChoice(given)) : std::nullopt;
   const OrganPreset preset = choosePreset(given, input, names);
   OptionValues& values = result.values;
   if (!givenFocus && names)

@@ -47,8 +47,8 @@ struct RenderOptionTable {
 
   std::vector<Option> rows = {
       {OptionNames("segmentation", 's'), "FILE|NAME", sceneGroup,
-       "Segmentation of the volume: a .seg.nrrd, a label map, or a segmentation of the scene, by "
-       "name or id [the scene's]",
+       "Segmentation of the volume: a .seg.nrrd, a label map or probability map, a folder of masks "
+       "with one structure per file, or a segmentation of the scene, by name or id [the scene's]",
        ValueSpec::labels().bind(scene.segmentation), OverrideGroup::focus},
       {"labels", "FILE|NAME", sceneGroup,
        "Names of label values: a .ctbl, .txt, .label, .json, .csv or .tsv file, or "
@@ -214,7 +214,7 @@ struct RenderOptionTable {
        OverrideGroup::materials},
       {"material", "TEXT", appearanceGroup,
        "Changes the material of one segment, such as \"Liver: color=#963e2e\" or \"Aorta: "
-       "clip=no\" (exempt from clipping); may be repeated",
+       "clip=no\" (exempt from clipping), of the library or --materials; may be repeated",
        ValueSpec::texts().bind(scene.materialChanges, readTexts), OverrideGroup::materials},
       {"lights", "FILE|PRESET|JSON", appearanceGroup,
        "Lights: theatre-wet (with highlights), theatre, cinema, studio, headlight, soft, amber, a "

@@ -28,7 +28,7 @@ void checkInput(const OptionValues& values, const RenderRequest& scene) {
   if (hasMaterials(scene) && !scene.segmentation && !isScene)
     throw usageError("--materials: requires --segmentation FILE, which holds the segments");
   if (!scene.materialChanges.empty() && !hasMaterials(scene))
-    throw usageError("--material: requires --materials; add --materials library");
+    throw usageError("--material: contradicts --materials none; omit one of them");
   for (const char* name : {"segmentation", "labels"})
     if (values.has(name) && !usesLabels)
       throw usageError("--", name,
@@ -224,6 +224,8 @@ RenderOptions makeRenderOptions(const OptionValues& given) {
   RenderOptions options = readOptions(values);
   RenderRequest& scene = options.scene;
   scene.input = *values.text("INPUT");
+  if (!scene.materialChanges.empty() && !scene.materials)
+    scene.materials = libraryMaterials;
   checkInput(values, scene);
   checkView(scene.view, scene);
   requireScale(options, scene.view.projection.value_or(Projection::orthographic));

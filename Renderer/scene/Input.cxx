@@ -3,6 +3,8 @@
 #include "base/Error.h"
 #include "files/medical/DicomSeries.h"
 #include "files/medical/VolumeReader.h"
+#include "files/segments/MaskFolder.h"
+#include "files/slicer/FocusNodes.h"
 #include "files/slicer/ScenePlan.h"
 #include "io/InputRegistry.h"
 
@@ -33,11 +35,43 @@ std::optional<SegmentNames> readSegmentNames(const InputChoice& choice) {
   return SegmentNames{*choice.segmentation, readSegmentInfos(*choice.segmentation, choice.labels)};
 }
 
+InputFiles listSegmentationFiles(const std::filesystem::path& path) {
+  InputFiles files;
+  if (!isFolder(path))
+    return {path.string()};
+  for (const auto& file : listMaskFiles(path))
+    files.push_back(file.string());
+  return files;
+}
+
 /// A segmentation with the files from which it was read.
 SegmentsInput makeSegments(Segmentation segmentation, InputFiles files) {
   if (fileExists(segmentation.namesSource()))
     files.push_back(segmentation.namesSource());
   return {std::move(segmentation), std::move(files)};
+}
+
+std::vector<const MrmlNode*> findNodesOfFocus(MrmlScene& scene, const InputChoice& choice) {
+  return choice.segmentation ? std::vector<const MrmlNode*>()
+                             : findFocusNodes(scene, choice.focus, choice.labels);
+}
+
+/// Segments of at least one node, together.
+Segmentation readNodes(MrmlScene& scene, const std::vector<const MrmlNode*>& nodes,
+                       const Grid* volume, const std::optional<std::string>& labels) {
+  std::optional<Segmentation> all;
+  for (const MrmlNode* node : nodes) {
+    Segmentation one = readSceneSegmentation(scene, *node, volume, labels);
+    const std::string source = scene.files.translatePaths(one.source());
+    if (!all) {
+      one.setSource(source);
+      all.emplace(std::move(one));
+    } else {
+      all->setSource(concat(all->source(), ", ", source));
+      all->add(std::move(one));
+    }
+  }
+  return std::move(*all);
 }
 
 } // namespace
@@ -66,6 +100,11 @@ Input::Input(std::filesystem::path path) : m_state(std::make_shared<SharedState>
 
 const std::filesystem::path& Input::path() const {
   return m_state->path;
+}
+
+bool Input::hasSeveralSegmentations() const {
+  const MrmlDocument* opened = document();
+  return opened && std::ranges::count_if(opened->nodes(), isSegmentation) > 1;
 }
 
 const MrmlDocument* Input::document() const {
@@ -139,14 +178,17 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const
   });
 }
 
-SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) const {
+SegmentsInput Input::segments(const InputChoice& choice, const std::optional<Grid>& volume) const {
+  const Grid* const grid = volume ? &*volume : nullptr;
   const auto readFile = [&] {
-    return makeSegments(readSegmentation(*choice.segmentation, &volume, choice.labels),
-                        {*choice.segmentation});
+    return makeSegments(readSegmentation(*choice.segmentation, grid, choice.labels),
+                        listSegmentationFiles(*choice.segmentation));
   };
   if (!m_state->isScene)
     return readFile();
   return m_state->withScene([&](MrmlScene& scene) {
+    if (const auto nodes = findNodesOfFocus(scene, choice); !nodes.empty())
+      return makeSegments(readNodes(scene, nodes, grid, choice.labels), scene.files.usedFiles());
     const ScenePlan plan = makePlan(scene, choice, true);
     if (!plan.segmentation && fileExists(*choice.segmentation))
       return readFile();
@@ -154,9 +196,7 @@ SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) con
       throw inputError(ErrorCode::unknownName, scene.document.source(),
                        "has no segmentation \"" + *choice.segmentation +
                            "\", and no such file exists; fenestra inspect lists the segmentations");
-    Segmentation segmentation =
-        readSceneSegmentation(scene, *plan.segmentation, &volume, choice.labels);
-    segmentation.setSource(scene.files.translatePaths(segmentation.source()));
+    Segmentation segmentation = readNodes(scene, {plan.segmentation}, grid, choice.labels);
     return makeSegments(std::move(segmentation), scene.files.usedFiles());
   });
 }

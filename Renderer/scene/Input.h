@@ -61,6 +61,8 @@ struct InputChoice {
   std::optional<std::string> volume = {};
   std::optional<std::string> segmentation = {};
   std::optional<std::string> labels = {}; ///< names of label values (LabelSearch.h)
+  /// Segments; they select among several segmentations of a scene (FocusNodes.h).
+  std::vector<std::string> focus = {};
 
   bool operator==(const InputChoice&) const = default;
 };
@@ -72,6 +74,8 @@ public:
   explicit Input(std::filesystem::path path);
 
   const std::filesystem::path& path() const;
+  /// True if the input is a scene with several segmentations or label maps.
+  bool hasSeveralSegmentations() const;
   /// The stored scene; null if the input is not a Slicer scene.
   const MrmlDocument* document() const;
   /// The opened scene, shared, for single-threaded use; null if the input is not a Slicer scene.
@@ -87,8 +91,8 @@ public:
                          const std::array<double, 2>& range) const;
   /// Empty without a segmentation.
   std::optional<SegmentNames> segmentNames(const InputChoice& choice) const;
-  /// Segmentation for a volume on the given grid.
-  SegmentsInput segments(const InputChoice& choice, const Grid& volume) const;
+  /// Segmentation for a volume on the given grid; without one, closed surfaces get their own.
+  SegmentsInput segments(const InputChoice& choice, const std::optional<Grid>& volume = {}) const;
   /// Volume property with this name or id.
   SceneTransfer property(const std::string& name) const;
   std::vector<std::string> propertyNames() const;

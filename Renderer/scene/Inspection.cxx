@@ -2,10 +2,14 @@
 
 #include "base/Color.h"
 #include "files/medical/DicomSeries.h"
+#include "files/segments/MaskFolder.h"
 #include "io/InputRegistry.h"
 #include "scene/DefaultTransfer.h"
 #include "scene/InspectionParts.h"
 #include "scene/SegmentMaterials.h"
+
+#include <algorithm>
+#include <cctype>
 
 namespace fenestra {
 namespace {
@@ -106,7 +110,62 @@ Json libraryJson() {
   return all;
 }
 
+/// An argument of a shell command, in quotes if needed.
+std::string quoteForShell(const std::string& text) {
+  const bool isPlain = !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) != 0 ||
+           std::string_view("_./+=:@%-").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  return isPlain ? text : concat("'", replaceAll(text, "'", "'\\''"), "'");
+}
+
+/// Volume beside a segmentation: the only volume file in its folder. A placeholder if there is none
+/// or several.
+std::string findVolumeBeside(const std::filesystem::path& segmentation) {
+  const std::filesystem::path path = std::filesystem::absolute(segmentation).lexically_normal();
+  const std::filesystem::path folder =
+      path.has_filename() ? path.parent_path() : path.parent_path().parent_path();
+  auto files = listMaskFiles(folder);
+  std::error_code unknown;
+  std::erase_if(files, [&](const auto& file) {
+    return std::filesystem::equivalent(file, segmentation, unknown);
+  });
+  return files.size() == 1 ? (segmentation / "..").lexically_normal() / files.front().filename()
+                           : std::filesystem::path("VOLUME");
+}
+
+/// Adds a command that renders the first segment with voxels. `volume`: the input.
+void addExample(const std::string& volume, const Json& segmentation, Json& report) {
+  const std::string file = segmentation["name"];
+  for (const Json& segment : segmentation["segments"])
+    if (segment["voxels"] > 0) {
+      report["examples"].push_back(concat(
+          "fenestra ", quoteForShell(volume), " --segmentation ", quoteForShell(file), " --focus ",
+          quoteForShell(replaceAll(segment["id"].get<std::string>(), ",", "\\,")),
+          " --output image.png"));
+      return;
+    }
+}
+
+/// A folder of masks is no input of a render, but of its option --segmentation.
+Json inspectMaskFolder(const RenderRequest& request) {
+  Json report = makeReport(request, "segmentation");
+  report["segmentations"].push_back(
+      inspectSegmentationFile(request.input, nullptr, request.labels));
+  addExample(findVolumeBeside(request.input), report["segmentations"].back(), report);
+  return report;
+}
+
+/// True for a folder with masks and without DICOM.
+bool isMaskFolder(const std::filesystem::path& path) {
+  Json unused;
+  return isFolder(path) && !listMaskFiles(path).empty() &&
+         !tryRead([&] { return findDicomSeries(path); }, unused);
+}
+
 Json inspectFiles(const RenderRequest& request, const Input& input) {
+  if (isMaskFolder(request.input))
+    return inspectMaskFolder(request);
   const bool isDicom = isFolder(request.input);
   Json report = makeReport(request, isDicom ? "dicom" : "volume");
   if (isDicom)
@@ -130,6 +189,7 @@ Json inspectFiles(const RenderRequest& request, const Input& input) {
     segmentations.back()["used"] = true;
     if (grid)
       report["render"]["segmentation"] = nullIfEmpty(*request.segmentation);
+    addExample(request.input.string(), segmentations.back(), report);
   }
   return report;
 }
@@ -156,6 +216,7 @@ Json makeReport(const RenderRequest& request, const char* kind) {
     report[list] = Json::array();
   report["others"] = Json::object();
   report["materials"] = libraryJson();
+  report["examples"] = Json::array();
   report["render"] = nullptr;
   report["refused"] = nullptr;
   report["warnings"] = Json::array();

@@ -23,6 +23,15 @@ bool hasMixedModalities(const Matches& matches) {
   });
 }
 
+Matches listMatchingPresets(const std::vector<OrganPreset>& presets,
+                            const std::vector<SegmentInfo>& segments) {
+  Matches matches;
+  for (const OrganPreset& preset : presets)
+    if (!findFocusSegments(preset.focus, segments).empty())
+      matches.push_back(&preset);
+  return matches;
+}
+
 std::string listMatches(const Matches& matches, const std::vector<SegmentInfo>& segments) {
   return join(matches, ", ", [&](const OrganPreset* preset) {
     return concat(preset->name, " (", joinSegmentNames(findFocusSegments(preset->focus, segments)),
@@ -52,13 +61,16 @@ std::string joinSegmentNames(const std::vector<SegmentInfo>& segments) {
 }
 
 const OrganPreset& findMatchingPreset(const std::vector<OrganPreset>& presets,
-                                      const std::vector<SegmentInfo>& segments,
+                                      const std::vector<SegmentInfo>& named,
                                       const std::string& source,
+                                      const std::function<std::vector<SegmentInfo>()>& listNonEmpty,
                                       const std::function<bool(Modality)>& isSuitable) {
-  Matches matches;
-  for (const OrganPreset& preset : presets)
-    if (!findFocusSegments(preset.focus, segments).empty())
-      matches.push_back(&preset);
+  std::vector<SegmentInfo> segments = named;
+  Matches matches = listMatchingPresets(presets, segments);
+  if (matches.size() > 1) {
+    segments = listNonEmpty();
+    matches = listMatchingPresets(presets, segments);
+  }
   const Matches all = matches;
   std::erase_if(matches, [&](const OrganPreset* preset) {
     return std::ranges::any_of(all, [&](const OrganPreset* other) {

@@ -19,13 +19,15 @@ std::vector<SegmentInfo> findFocusSegments(const SegmentPatterns& patterns,
 /// Joins at most 12 names for a message: "liver, left lung, …".
 std::string joinSegmentNames(const std::vector<SegmentInfo>& segments);
 
-/// Finds the preset of `presets` whose focus is among the segments. A matching preset excludes the
-/// presets that it lists in OrganPreset::before. If the remaining ones differ in modality, only
+/// Finds the preset of `presets` whose focus is among the segments; if several match, among those
+/// with voxels, which listNonEmpty() returns. A matching preset excludes the presets that it lists
+/// in OrganPreset::before. If the remaining ones differ in modality, only
 /// those with isSuitable(modality) count; it is not called otherwise. Throws Error (input), with
 /// `source` as the segmentation's name, if none or several remain.
 const OrganPreset& findMatchingPreset(const std::vector<OrganPreset>& presets,
                                       const std::vector<SegmentInfo>& segments,
                                       const std::string& source,
+                                      const std::function<std::vector<SegmentInfo>()>& listNonEmpty,
                                       const std::function<bool(Modality)>& isSuitable);
 
 } // namespace fenestra

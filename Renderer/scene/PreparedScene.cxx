@@ -51,12 +51,14 @@ void PreparedScene::prepare() {
   const auto raw = m_volume.get(m_input, r.volume);
   const auto settings = m_settings.get(m_input, r.volume, r.view.isSceneCamera());
   if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
-    m_segments.get(m_input, {r.volume, r.segmentation, r.labels}, raw->volume.grid);
+    m_segments.get(m_input, chooseSegmentation(), raw->volume.grid);
   if (r.focusStyle.hasOrganMargin && !r.focus.empty() &&
       isPlausibleModality(Modality::ct, raw->volume))
     m_trimmed.get(m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus, raw);
-  const auto focus =
-      m_focus.get(currentSegments(), r.focus, r.focusStyle.shaping, raw->volume.grid);
+  if (!r.focus.empty())
+    m_hasVoxels.get(m_segments.result());
+  const auto focus = m_focus.get(currentSegments(), m_hasVoxels.result(), r.focus,
+                                 r.focusStyle.shaping, raw->volume.grid);
   if (!r.transfer)
     m_sceneTransfer.get(m_input, r.volume, {raw->volume.minimum, raw->volume.maximum});
   if (m_segments.result() &&
@@ -98,6 +100,14 @@ void PreparedScene::prepare() {
   if (r.features)
     m_features.get(volume, settings, transfer, tintOrMixture(), placed, camera, clip,
                    m_style.result(), majorants);
+}
+
+InputChoice PreparedScene::chooseSegmentation() const {
+  const RenderRequest& r = m_request;
+  InputChoice choice{r.volume, r.segmentation, r.labels};
+  if (!r.segmentation && m_input.hasSeveralSegmentations()) // else another focus reads nothing anew
+    choice.focus = r.focus;
+  return choice;
 }
 
 VolumeHandle PreparedScene::smooth() {
@@ -252,6 +262,7 @@ std::vector<Message> PreparedScene::warnings() const {
   append(m_settings->warnings, warnings);
   if (m_segments.result())
     append(m_segments->segmentation.warnings(), warnings);
+  append(m_focus->warnings, warnings);
   append(m_transfer->warnings, warnings);
   if (m_focusWarnings.result())
     append(*m_focusWarnings, warnings);

@@ -93,6 +93,7 @@ private:
   std::string resolveMaterials(const Handle<SegmentsInput>& segments) const;
   void makeTint(const std::string& name);
   bool hasSolidFocus() const { return m_transparent.result() && !m_transparent->empty(); }
+  InputChoice chooseSegmentation() const;
   /// Smooths the volume if the request says so. Returns currentVolume().
   VolumeHandle smooth();
   VolumeHandle currentVolume() const;

@@ -70,7 +70,8 @@ Handle<SegmentsInput> separateSegments(const Handle<SegmentsInput>& input,
   for (std::size_t i = 0; i < masks.size(); ++i) {
     Mask mask = masks[i];
     for (std::size_t k = i + 1; k < masks.size(); ++k)
-      mask = removeContact(std::move(mask), masks[k], gap);
+      if (isSameLattice(mask.grid, masks[k].grid))
+        mask = removeContact(std::move(mask), masks[k], gap);
     if (mask.count == masks[i].count || 2 * mask.count < masks[i].count) // thin, such as a bronchus
       continue;
     if (!copy)

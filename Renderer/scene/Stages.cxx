@@ -244,11 +244,23 @@ TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
   return trimmed;
 }
 
-FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<std::string>& names,
-                     const MaskShaping& shaping, const Grid& volume) {
+FocusInput makeFocus(const Handle<SegmentsInput>& segments,
+                     const Handle<std::vector<bool>>& hasVoxels,
+                     const std::vector<std::string>& names, const MaskShaping& shaping,
+                     const Grid& volume) {
   if (names.empty())
     return {};
-  return {segments->segmentation.makeFocusMask(names, volume, shaping)};
+  const Segmentation& segmentation = segments->segmentation;
+  FocusInput focus{segmentation.makeFocusMask(names, volume, shaping)};
+  std::vector<SegmentInfo> empty;
+  for (const std::string& name : names)
+    if (const std::size_t number = segmentation.find(name); !(*hasVoxels)[number])
+      empty.push_back(segmentation.segments()[number]);
+  if (!empty.empty())
+    focus.warnings.push_back(
+        makeMessage(ErrorCode::emptyFocus, segmentation.source(),
+                    "segments of the focus have no voxel: ", formatSegments(empty)));
+  return focus;
 }
 
 bool needsContent(const VolumeHandle& volume, const Handle<NamedTransfer>& named,

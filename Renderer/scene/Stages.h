@@ -19,6 +19,7 @@ namespace fenestra {
 
 struct FocusInput {
   std::optional<Mask> mask = {}; ///< empty: no focus requested
+  std::vector<Message> warnings = {};
 };
 
 using SettingsHandle = Handle<SceneSettings>;
@@ -49,8 +50,12 @@ TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
                              const std::vector<std::string>& names, const VolumeHandle& volume);
 
 /// Mask of the segments `names` on the volume's grid; `segments` is null only if `names` is empty.
-FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<std::string>& names,
-                     const MaskShaping& shaping, const Grid& volume);
+/// Warns of segments that had no voxel even before trimSegments(). `hasVoxels`: from
+/// findNonEmpty().
+FocusInput makeFocus(const Handle<SegmentsInput>& segments,
+                     const Handle<std::vector<bool>>& hasVoxels,
+                     const std::vector<std::string>& names, const MaskShaping& shaping,
+                     const Grid& volume);
 
 /// True if chooseTransfer() depends on the content of the scan.
 bool needsContent(const VolumeHandle& volume, const Handle<NamedTransfer>& named,

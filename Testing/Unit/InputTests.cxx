@@ -58,6 +58,72 @@ TEST_F(ArchiveInput, IsOpenedOnceForSceneAndChanges) {
   EXPECT_TRUE(changed.focus());
 }
 
+/// Scene with two visible segmentations, whose segments share ids and label values, a hidden one,
+/// and a label map with a color table.
+class SeveralSegmentations : public ::testing::Test {
+protected:
+  SeveralSegmentations() {
+    const auto write = [&](const char* file, const char* id, const char* name, std::size_t from) {
+      FileGeometry geometry;
+      addSegment(geometry, 0, id, name, "1", "0");
+      std::vector<std::uint8_t> labels(24, 0);
+      std::fill_n(labels.begin() + static_cast<std::ptrdiff_t>(from), 4, std::uint8_t{1});
+      writeFile(folder / file, labels, geometry);
+    };
+    write("a.seg.nrrd", "S1", "Liver", 0);
+    write("b.seg.nrrd", "S1", "Tumour", 2);
+    write("c.seg.nrrd", "S2", "Spleen", 12);
+    std::vector<std::uint8_t> labels(24, 0);
+    labels[7] = 5;
+    labels[8] = 6;
+    writeFile(folder / "map.nrrd", labels);
+    folder.write("map.ctbl", "5 Duodenum 10 20 30 255\n");
+    std::string text = "<MRML>" + volumeNode;
+    for (const char* node : {"a", "b", "c"})
+      text += concat("<SegmentationStorage id=\"s", node, "\" fileName=\"", node,
+                     ".seg.nrrd\"/><SegmentationDisplay id=\"d", node, "\" visibility=\"",
+                     std::string(node) == "c" ? "false" : "true", "\"/><Segmentation id=\"", node,
+                     "\" name=\"", node, "\" references=\"display:d", node, ";storage:s", node,
+                     ";\"/>");
+    text += R"(<VolumeArchetypeStorage id="sm" fileName="map.nrrd"/>
+      <ColorTableStorage id="st" fileName="map.ctbl"/>
+      <ColorTable id="t" name="T" references="storage:st;"/>
+      <LabelMapVolumeDisplay id="dm" references="color:t;"/>
+      <LabelMapVolume id="m" name="M" references="display:dm;storage:sm;"/></MRML>)";
+    folder.write("s.mrml", text);
+  }
+
+  Segmentation read(const std::vector<std::string>& focus) const {
+    return input.segments({.focus = focus}).segmentation;
+  }
+  std::int64_t count(const std::vector<std::string>& focus) const {
+    const Segmentation segmentation = read(focus);
+    return segmentation.makeFocusMask(focus, segmentation.grid()).count;
+  }
+
+  const SceneFolder folder;
+  const Input input = Input(folder / "s.mrml");
+};
+
+TEST_F(SeveralSegmentations, FocusFindsTheNodeOfItsSegments) {
+  EXPECT_EQ(read({"Tumour"}).segments().size(), 1U);
+  EXPECT_EQ(count({"Liver"}), 4);
+  EXPECT_EQ(count({"Liver", "Tumour"}), 6) << "two voxels belong to both";
+  EXPECT_EQ(count({"Spleen", "Liver"}), 8) << "hidden, but no visible one has it";
+  EXPECT_EQ(count({"Duodenum", "Tumour"}), 5) << "named by the color table";
+  EXPECT_EQ(read({"Liver", "Tumour"}).segments().size(), 2U);
+  EXPECT_EQ(input.segments({.focus = {"Tumour"}}).files,
+            (InputFiles{(folder / "s.mrml").string(), (folder / "a.seg.nrrd").string(),
+                        (folder / "b.seg.nrrd").string()}));
+}
+
+TEST_F(SeveralSegmentations, AmbiguousAndUnknownSegmentsAreRefused) {
+  expectRefused(folder / "s.mrml", "ambiguous-segmentation | S1 | a | b", [&] { read({"S1"}); });
+  expectRefused(folder / "s.mrml", "ambiguous-segmentation | Heart", [&] { read({"Heart"}); });
+  EXPECT_EQ(input.segments({.segmentation = "b", .focus = {"S1"}}).segmentation.segments().size(),
+            1U);
+}
+
 TEST_F(ArchiveInput, ListsTheFilesOfEachRead) {
   const std::string inArchive = archive.string() + "/a/";
   const Input input(archive);

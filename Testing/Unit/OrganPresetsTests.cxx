@@ -63,8 +63,9 @@ TEST(OrganPresets, PresetMatchesSegmentsAndModality) {
       makePreset("head-ct", Modality::ct, {{"brain"}}),
   };
   const auto match = [&](const Strings& names, Modality known) {
-    return findMatchingPreset(presets, makeSegments(names), "s.seg.nrrd",
-                              [known](Modality modality) { return modality == known; })
+    return findMatchingPreset(
+               presets, makeSegments(names), "s.seg.nrrd", [&] { return makeSegments(names); },
+               [known](Modality modality) { return modality == known; })
         .name;
   };
   EXPECT_EQ(match({"Liver", "Spleen"}, Modality::ct), "liver");
@@ -82,10 +83,28 @@ TEST(OrganPresets, SeveralMatchingPresetsAreListed) {
   const std::vector<OrganPreset> presets = {makePreset("liver", Modality::ct, {{"liver"}}),
                                             makePreset("heart", Modality::ct, {{"heart"}})};
   expectRefused("s", "ambiguous-preset | liver (liver), heart (heart)", [&] {
-    findMatchingPreset(presets, makeSegments({"liver", "heart"}), "s", [](Modality) -> bool {
-      throw std::logic_error("the modality must not matter");
-    });
+    const auto segments = makeSegments({"liver", "heart"});
+    findMatchingPreset(
+        presets, segments, "s", [&] { return segments; },
+        [](Modality) -> bool { throw std::logic_error("the modality must not matter"); });
   });
+}
+
+TEST(OrganPresets, EmptySegmentsMatchNoPreset) {
+  const std::vector<OrganPreset> presets = {
+      makePreset("liver", Modality::ct, {{"liver"}}),
+      makePreset("heart", Modality::ct, {{"heart"}}),
+      makePreset("tumor", Modality::ct, {{"tumor"}}, {"liver", "heart"})};
+  const auto match = [&](const Strings& names, const Strings& nonEmpty) {
+    return findMatchingPreset(
+               presets, makeSegments(names), "s", [&] { return makeSegments(nonEmpty); },
+               [](Modality) { return true; })
+        .name;
+  };
+  EXPECT_EQ(match({"liver", "heart", "spleen"}, {"liver", "spleen"}), "liver");
+  EXPECT_EQ(match({"liver", "tumor"}, {"liver"}), "liver") << "an empty one excludes no other";
+  EXPECT_EQ(match({"heart"}, {}), "heart") << "labels are read only to decide";
+  expectRefused("s", "no-matching-preset", [&] { match({"liver", "heart"}, {"spleen"}); });
 }
 
 /// Built-in presets that select the segment as their focus.

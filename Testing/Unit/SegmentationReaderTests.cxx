@@ -198,7 +198,7 @@ TEST(SegmentationReader, RefusesFilesThatAreNotSegmentations) {
   };
   refuse("missing-file");
   std::vector<float> fraction(24, 0.0f);
-  fraction[3] = 0.5f;
+  fraction[3] = 1.5f;
   writeFile(folder / "s.nrrd", fraction);
   refuse("unsupported-file");
   fraction[3] = std::numeric_limits<float>::quiet_NaN();

@@ -10,11 +10,6 @@
 namespace fenestra {
 namespace {
 
-std::filesystem::path stripExtensions(const std::filesystem::path& path) {
-  const std::filesystem::path stem = path.stem();
-  return path.parent_path() / (lowercaseExtension(path) == ".gz" ? stem.stem() : stem);
-}
-
 struct SiblingTable {
   std::filesystem::path file;
   bool mustMatchExactly; ///< must name exactly the label map's values, since many label maps may
@@ -94,6 +89,11 @@ FoundNames readSiblingNames(const std::filesystem::path& path,
 }
 
 } // namespace
+
+std::filesystem::path stripExtensions(const std::filesystem::path& path) {
+  const std::filesystem::path stem = path.stem();
+  return path.parent_path() / (lowercaseExtension(path) == ".gz" ? stem.stem() : stem);
+}
 
 FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
                           const std::string& extensions,

@@ -15,6 +15,9 @@ struct FoundNames {
   std::vector<Message> warnings = {};
 };
 
+/// The path without its last extension, and without both of ".nii.gz".
+std::filesystem::path stripExtensions(const std::filesystem::path& path);
+
 /// Finds names for the `values` (without 0) of the label map at `path`. `requested` is a file, a
 /// built-in table, or "totalsegmentator", whose version follows from the label table in the NIfTI
 /// header `extensions`. If nothing is requested, uses that label table, else a table with the label

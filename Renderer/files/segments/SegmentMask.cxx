@@ -2,9 +2,9 @@
 
 #include "base/Error.h"
 #include "files/segments/SegmentationReader.h"
-#include "io/MessageText.h"
 #include "model/masks/EqualVolume.h"
 #include "model/masks/MaskShaping.h"
+#include "model/masks/OuterLayer.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <functional>
 #include <map>
 #include <set>
 #include <utility>
@@ -87,11 +86,12 @@ private:
 template <typename Label>
 class SelectedVoxels {
 public:
-  SelectedVoxels(const Grid& grid, std::size_t layerCount, const LargeArray<Label>& labels,
+  /// `labels`: of `map`. The segments must be in the map's layers.
+  SelectedVoxels(const LabelMap& map, const LargeArray<Label>& labels,
                  const std::vector<SegmentInfo>& chosen)
-      : m_grid(grid), m_layerCount(layerCount), m_labels(labels), m_values(layerCount) {
+      : m_grid(map.grid), m_layerCount(map.layerCount), m_labels(labels), m_values(map.layerCount) {
     for (const SegmentInfo& segment : chosen)
-      m_values[segment.layer].insert(segment.labelValue);
+      m_values[segment.layer - map.firstLayer].insert(segment.labelValue);
   }
 
   /// Sets the mask's grid, voxels and count, cropped to the selected voxels; leaves it unchanged if
@@ -227,53 +227,46 @@ Box computeWorldBounds(const Grid& grid, const VoxelExtent& extent) {
   return bounds;
 }
 
-// ---- messages
+// ---- shape
 
-constexpr std::size_t maxListed = 12; ///< segments in a message
-
-std::string formatSegments(const std::vector<SegmentInfo>& segments) {
-  const auto format = [](const SegmentInfo& segment) {
-    const std::string id = sanitize(segment.id);
-    return segment.name == segment.id ? id : concat(id, " (", sanitize(segment.name), ')');
-  };
-  return join(segments, ", ", format, maxListed);
+/// Number of the mask's voxels that lie in one of the label maps, not beyond a face of the volume.
+std::int64_t countLabeled(const Mask& mask, const std::vector<Grid>& labelMaps) {
+  std::vector<std::pair<Size3, Size3>> boxes; // first voxel and end, in the mask
+  for (const Grid& grid : labelMaps)
+    if (isSameLattice(grid, mask.grid)) {
+      const Vec3 first = mask.grid.worldToIndex * grid.indexToWorld.translation();
+      const Size3 lower = first.array().round().cast<std::int64_t>();
+      boxes.emplace_back(lower, lower + grid.size);
+    }
+  std::int64_t count = 0;
+  const Size3& size = mask.grid.size;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x)
+        if (const Size3 voxel(x, y, z); mask.contains(voxel))
+          count += std::ranges::any_of(boxes, [&](const auto& box) {
+            return (voxel.array() >= box.first.array()).all() &&
+                   (voxel.array() < box.second.array()).all();
+          });
+  return count;
 }
 
-/// True if each word of the selector, ignoring a final s, begins a word of the name: "Kidneys" and
-/// "left kidney" match kidney_left.
-bool isLikelyMatch(const std::string& selector, const std::string& name) {
-  const std::vector<std::string> words = splitName(name), selectorWords = splitName(selector);
-  return !selectorWords.empty() && std::ranges::all_of(selectorWords, [&](std::string word) {
-    if (word.size() > 3 && word.back() == 's')
-      word.pop_back();
-    return std::ranges::any_of(words,
-                               [&](const std::string& one) { return one.starts_with(word); });
-  });
-}
-
-/// Error for an unknown selector, with likely matches, else all segments.
-Error makeUnknownError(const std::string& source, const std::string& selector,
-                       const std::vector<SegmentInfo>& segments) {
-  const auto makeError = [&](ErrorCode code, const std::string& hint) {
-    return inputError(code, source, "has no segment \"", sanitize(selector), "\"; ", hint);
+/// Binary masks on the same lattice: resamples masks of several lattices on the finest one, unless
+/// it has more than eight voxels per voxel of the volume.
+std::vector<Mask> alignMasks(std::vector<Mask> masks, const Grid& volume) {
+  const auto findCell = [](const Grid& grid) {
+    return std::abs(grid.indexToWorld.linear().determinant());
   };
-  if (segments.empty())
-    return makeError(ErrorCode::unknownName, "it has no segments");
-  std::vector<SegmentInfo> suggested;
-  std::ranges::copy_if(segments, std::back_inserter(suggested),
-                       [&](const SegmentInfo& one) { return isLikelyMatch(selector, one.name); });
-  if (!suggested.empty())
-    return makeError(
-        ErrorCode::unknownName,
-        concat("did you mean ",
-               join(
-                   suggested, ", ", [](const auto& s) { return sanitize(s.name); }, maxListed),
-               "?"));
-  const bool unnamed = std::ranges::all_of(segments, [](const SegmentInfo& segment) {
-    return segment.name == concat("Segment_", segment.labelValue);
-  });
-  return makeError(unnamed ? ErrorCode::unnamedSegments : ErrorCode::unknownName,
-                   "it has " + formatSegments(segments));
+  const auto finest =
+      std::ranges::min_element(masks, {}, [&](const Mask& mask) { return findCell(mask.grid); });
+  const Grid lattice = 8.0 * findCell(finest->grid) < findCell(volume) ? volume : finest->grid;
+  for (Mask& mask : masks)
+    if (!isSameLattice(mask.grid, lattice)) {
+      std::vector<std::string> names = std::move(mask.names);
+      mask = resampleMask(mask, lattice, volume);
+      mask.names = std::move(names);
+    }
+  return masks;
 }
 
 /// Width of the labels' stairs, mm: the longer native edge of the two finer axes. Slices across the
@@ -286,62 +279,67 @@ double findStairWidth(const Vec3& nativeSpacing) {
 
 } // namespace
 
-std::size_t Segmentation::find(const std::string& selector) const {
-  const auto value = parseNumber<std::int32_t>(selector);
-  const std::array<std::function<bool(const SegmentInfo&)>, 3> matchers = {
-      [&](const SegmentInfo& segment) { return segment.id == selector; },
-      [&](const SegmentInfo& segment) { return segment.name == selector; },
-      [&](const SegmentInfo& segment) { return segment.labelValue == value; }};
-  for (const auto& matches : matchers) {
-    std::vector<SegmentInfo> found;
-    std::ranges::copy_if(m_segments, std::back_inserter(found), matches);
-    if (found.size() > 1)
-      throw inputError(ErrorCode::ambiguousName, m_source, "segment \"", sanitize(selector),
-                       "\" matches several: ", formatSegments(found), "; choose one by its id");
-    if (!found.empty())
-      return static_cast<std::size_t>(std::ranges::find_if(m_segments, matches) -
-                                      m_segments.begin());
+void Segmentation::add(Segmentation more) {
+  const std::size_t layers = m_maps.back().firstLayer + m_maps.back().layerCount;
+  for (LabelMap& map : more.m_maps) {
+    map.firstLayer += layers;
+    for (LabelMap& other : m_maps)
+      if (isSameLattice(map.grid, other.grid))
+        map.nativeVoxels = other.nativeVoxels = map.nativeVoxels.cwiseMax(other.nativeVoxels);
+    m_maps.push_back(std::move(map));
   }
-  if (const std::string_view bare = trim(selector); bare.size() < selector.size())
-    return find(std::string(bare));
-  throw makeUnknownError(m_source, selector, m_segments);
+  for (SegmentInfo& segment : more.m_segments) {
+    segment.layer += layers;
+    m_segments.push_back(std::move(segment));
+  }
+  addWarnings(more.m_warnings);
+}
+
+std::size_t Segmentation::findMap(std::size_t layer) const {
+  const auto found = std::ranges::find_if(
+      m_maps, [&](const LabelMap& map) { return layer < map.firstLayer + map.layerCount; });
+  return static_cast<std::size_t>(found - m_maps.begin());
 }
 
 std::vector<SegmentStatistics> Segmentation::statistics() const {
-  std::vector<StatisticsByValue> layers(m_layerCount);
+  std::map<std::size_t, StatisticsByValue> layers;
   for (const SegmentInfo& segment : m_segments)
     layers[segment.layer][segment.labelValue] = {};
-  std::visit(
-      [&](const auto& labels) {
-        for (std::size_t layer = 0; layer < m_layerCount; ++layer)
-          countVoxels(labels, m_grid.size, layer, m_layerCount, layers[layer]);
-      },
-      m_labels);
+  for (auto& [layer, values] : layers) {
+    const LabelMap& map = m_maps[findMap(layer)];
+    std::visit(
+        [&, layer = layer - map.firstLayer, &values = values](const auto& labels) {
+          countVoxels(labels, map.grid.size, layer, map.layerCount, values);
+        },
+        map.labels);
+  }
   std::vector<SegmentStatistics> statistics;
   for (const SegmentInfo& segment : m_segments) {
-    const ValueStatistics& value = layers[segment.layer].at(segment.labelValue);
+    const ValueStatistics& value = layers.at(segment.layer).at(segment.labelValue);
     statistics.push_back({value.voxels, {}});
     if (value.voxels > 0)
-      statistics.back().bounds = computeWorldBounds(m_grid, value.extent);
+      statistics.back().bounds =
+          computeWorldBounds(m_maps[findMap(segment.layer)].grid, value.extent);
   }
   return statistics;
 }
 
 void Segmentation::restrictSegment(const SegmentInfo& segment, const Mask& mask) {
-  const Vec3 place = m_grid.worldToIndex * mask.grid.indexToWorld.translation();
+  LabelMap& map = m_maps[findMap(segment.layer)];
+  const Vec3 place = map.grid.worldToIndex * mask.grid.indexToWorld.translation();
   const Size3 origin = place.array().round().cast<std::int64_t>();
   const auto restrict = [&](auto& labels) {
-    tbb::parallel_for(std::int64_t{0}, m_grid.size.z(), [&](std::int64_t z) {
-      for (std::int64_t y = 0; y < m_grid.size.y(); ++y)
-        for (std::int64_t x = 0; x < m_grid.size.x(); ++x) {
-          const std::size_t voxel = linearIndex({x, y, z}, m_grid.size);
-          auto& label = labels[voxel * m_layerCount + segment.layer];
+    tbb::parallel_for(std::int64_t{0}, map.grid.size.z(), [&](std::int64_t z) {
+      for (std::int64_t y = 0; y < map.grid.size.y(); ++y)
+        for (std::int64_t x = 0; x < map.grid.size.x(); ++x) {
+          const std::size_t voxel = linearIndex({x, y, z}, map.grid.size);
+          auto& label = labels[voxel * map.layerCount + segment.layer - map.firstLayer];
           if (label == segment.labelValue && !mask.contains(Size3(x, y, z) - origin))
             label = 0;
         }
     });
   };
-  std::visit(restrict, m_labels);
+  std::visit(restrict, map.labels);
 }
 
 Mask Segmentation::makeFocusMask(const std::vector<std::string>& selectors, const Grid& volume,
@@ -360,30 +358,53 @@ Mask Segmentation::makeFocusMask(const std::vector<std::string>& selectors, cons
   return mask;
 }
 
-Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& volume,
-                            const MaskShaping& shaping) const {
-  const auto fillMask = [&](const std::vector<SegmentInfo>& segments) {
+Mask Segmentation::fillMask(const std::vector<SegmentInfo>& chosen, const Grid& volume,
+                            bool isShaped) const {
+  std::map<std::size_t, std::vector<SegmentInfo>> byMap;
+  for (const SegmentInfo& segment : chosen)
+    byMap[findMap(segment.layer)].push_back(segment);
+  std::vector<std::vector<Mask>> byLattice;
+  std::vector<Grid> grids; // of the label maps
+  for (const auto& [index, segments] : byMap) {
+    const LabelMap& map = m_maps[index];
     Mask mask;
-    for (const SegmentInfo& segment : segments)
-      mask.names.push_back(segment.name);
     std::visit(
         [&](const auto& labels) {
-          SelectedVoxels(m_grid, m_layerCount, labels, segments)
-              .fill(mask, extendToVolume(m_grid, volume));
+          SelectedVoxels(map, labels, segments).fill(mask, extendToVolume(map.grid, volume));
         },
-        m_labels);
+        map.labels);
     if (mask.count == 0)
-      throw inputError(ErrorCode::emptyFocus, m_source, "the focus has no voxel (",
-                       formatSegments(segments), "); choose segments that are not empty");
-    return mask;
-  };
+      continue;
+    grids.push_back(map.grid);
+    const auto same = std::ranges::find_if(byLattice, [&](const std::vector<Mask>& masks) {
+      return isSameLattice(masks.front().grid, mask.grid);
+    });
+    (same == byLattice.end() ? byLattice.emplace_back() : *same).push_back(std::move(mask));
+  }
+  if (byLattice.empty())
+    throw inputError(ErrorCode::emptyFocus, m_source, "the focus has no voxel (",
+                     formatSegments(chosen), "); choose segments that are not empty");
+  std::vector<Mask> masks;
+  for (std::vector<Mask>& same : byLattice) {
+    const bool isUnion = same.size() > 1;
+    Mask mask = uniteMasks(std::move(same));
+    if (isUnion)
+      mask.count = countLabeled(mask, grids);
+    masks.push_back(isShaped ? interpolateSlices(std::move(mask)) : std::move(mask));
+  }
+  Mask all = uniteMasks(alignMasks(std::move(masks), volume));
+  all.names.clear();
+  for (const SegmentInfo& segment : chosen)
+    all.names.push_back(segment.name);
+  return all;
+}
+
+Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& volume,
+                            const MaskShaping& shaping) const {
   if (shaping == MaskShaping())
-    return fillMask(chosen);
+    return fillMask(chosen, volume, false);
   const auto shapeMask = [&](const std::vector<SegmentInfo>& segments, double margin) {
-    Mask mask = fillMask(segments);
-    if (shaping.smoothing != 0.0)
-      mask = interpolateSlices(std::move(mask));
-    return applyMargin(std::move(mask), margin, volume);
+    return applyMargin(fillMask(segments, volume, shaping.smoothing != 0.0), margin, volume);
   };
   std::vector<Mask> masks;
   if (shaping.margins.size() <= 1) // unite first: no gaps between adjacent segments
@@ -391,9 +412,12 @@ Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& 
   else
     for (std::size_t i = 0; i < chosen.size(); ++i)
       masks.push_back(shapeMask({chosen[i]}, shaping.margins[i]));
-  const Mask all = uniteMasks(std::move(masks));
+  const Mask all = uniteMasks(alignMasks(std::move(masks), volume));
+  double stairs = 0.0; // mm
+  for (const SegmentInfo& segment : chosen)
+    stairs = std::max(stairs, findStairWidth(findNativeSpacing(m_maps[findMap(segment.layer)])));
   Mask smooth = shaping.smoothing ? smoothMask(all, *shaping.smoothing, volume)
-                                  : smoothMaskAuto(all, findStairWidth(nativeSpacing()), volume);
+                                  : smoothMaskAuto(all, stairs, volume);
   smooth.volumeChange = measureVolumeChange(all, smooth, volume);
   return smooth;
 }

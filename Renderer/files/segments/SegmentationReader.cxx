@@ -6,6 +6,8 @@
 #include "files/medical/SampleStore.h"
 #include "files/segments/ClosedSurface.h"
 #include "files/segments/LabelSearch.h"
+#include "files/segments/MaskFolder.h"
+#include "files/segments/MaskRuns.h"
 #include "io/InputRegistry.h"
 #include "io/JsonNode.h"
 
@@ -13,6 +15,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace fenestra {
@@ -236,6 +239,8 @@ Segmentation::Labels interleaveLayers(Segmentation::Labels layers, std::size_t c
 
 std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
                                           const std::optional<std::string>& labels) {
+  if (isFolder(path))
+    return readMaskFolderInfos(path);
   if (lowercaseExtension(path) == ".vtm")
     return readClosedSurfaceInfos(path);
   const std::string source = path.string();
@@ -253,18 +258,27 @@ std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference,
                               const std::optional<std::string>& labelTable) {
   const std::string source = path.string();
+  if (isFolder(path)) {
+    rejectLabels(source, labelTable);
+    return readMaskFolder(path);
+  }
   if (lowercaseExtension(path) == ".vtm") {
     rejectLabels(source, labelTable);
     return readClosedSurfaces(path, reference);
   }
   MedicalImage image;
   Segmentation::Labels labels;
+  bool isMap = true; // else a map of probabilities
   readMedicalImage(path, Components::any, [&](const MedicalImage& read, const SampleSource& from) {
     LabelStore samples(from.count);
     readSamples(from, samples);
-    labels = toLabels(std::move(samples), source);
+    isMap = !isProbability(samples.stats()) || read.components > 1;
+    if (isMap)
+      labels = toLabels(std::move(samples), source);
     image = read;
   });
+  if (!isMap)
+    std::tie(image.grid, labels) = labelMask(readMask(path), 1);
   if (image.hasFrames)
     labels = interleaveLayers(std::move(labels), image.components);
   auto segments = readSegments(image.fields, source, image.components);
@@ -281,7 +295,9 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
   }
   Segmentation segmentation(source, applyExtent(image.grid, image.fields, source), image.components,
                             std::move(labels), std::move(segments));
-  segmentation.setNamesSource(std::move(found.source), std::move(found.warnings));
+  segmentation.setNamesSource(std::move(found.source));
+  segmentation.addWarnings(image.warnings);
+  segmentation.addWarnings(found.warnings);
   return segmentation;
 }
 

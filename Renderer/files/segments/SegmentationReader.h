@@ -19,8 +19,8 @@ namespace fenestra {
 struct SegmentInfo {
   std::string id;
   std::string name;
-  std::int32_t labelValue = 1; ///< never 0, the background
-  std::size_t layer = 0;
+  std::int32_t labelValue = 1;    ///< never 0, the background
+  std::size_t layer = 0;          ///< counted over all label maps
   Rgb color = Rgb::Constant(0.5); ///< display-encoded
   /// Terminology codes of category, type and body region, like "SCT^39607008"; empty: not given.
   std::string category = {}, type = {}, region = {};
@@ -29,12 +29,30 @@ struct SegmentInfo {
   void parseTerminology(std::string_view tags);
 };
 
+/// Lists ids and names for a message, at most 12.
+std::string formatSegments(const std::vector<SegmentInfo>& segments);
+
 struct SegmentStatistics {
   std::int64_t voxels = 0;
   Box bounds = {}; ///< axis-aligned in RAS, mm, enclosing the voxels; empty (at 0) without voxels
 };
 
-/// Label map in layers; segments in different layers may overlap.
+/// Labels on a grid, in layers.
+struct LabelMap {
+  LabelMap(const Grid& gridIn, std::size_t layers, Labels labelsIn)
+      : grid(gridIn),
+        layerCount(layers),
+        labels(std::move(labelsIn)),
+        nativeVoxels(estimateNativeVoxels(labels, grid.size, layerCount)) {}
+
+  Grid grid;
+  std::size_t layerCount;
+  Labels labels;
+  Vec3 nativeVoxels;
+  std::size_t firstLayer = 0; ///< number of the layers of the label maps before it
+};
+
+/// One or more label maps in layers; segments in different layers may overlap.
 class Segmentation {
 public:
   using Labels = fenestra::Labels;
@@ -42,35 +60,38 @@ public:
   /// `source` is the file name in messages.
   Segmentation(std::string source, const Grid& grid, std::size_t layerCount, Labels labels,
                std::vector<SegmentInfo> segments)
-      : m_source(std::move(source)),
-        m_grid(grid),
-        m_layerCount(layerCount),
-        m_labels(std::move(labels)),
-        m_segments(std::move(segments)),
-        m_nativeVoxels(estimateNativeVoxels(m_labels, grid.size, layerCount)) {}
+      : m_source(std::move(source)), m_segments(std::move(segments)) {
+    m_maps.emplace_back(grid, layerCount, std::move(labels));
+  }
 
-  const Grid& grid() const { return m_grid; }
+  /// Adds the label maps and segments of another segmentation, as further layers. Label maps on the
+  /// same lattice count as made on equal voxels: the wider ones of their estimates.
+  void add(Segmentation more);
+
+  /// Of the first label map.
+  const Grid& grid() const { return m_maps.front().grid; }
   /// File name in messages.
   const std::string& source() const { return m_source; }
   void setSource(std::string source) { m_source = std::move(source); }
   /// File or table that names the label values; empty: they have no names, or the segmentation's
   /// own.
   const std::string& namesSource() const { return m_namesSource; }
+  void setNamesSource(std::string source) { m_namesSource = std::move(source); }
   const std::vector<Message>& warnings() const { return m_warnings; }
-  void setNamesSource(std::string source, std::vector<Message> warnings) {
-    m_namesSource = std::move(source);
-    m_warnings = std::move(warnings);
+  void addWarnings(const std::vector<Message>& warnings) {
+    m_warnings.insert(m_warnings.end(), warnings.begin(), warnings.end());
   }
-  /// Replaces the grid by one of equal size.
-  void setGrid(const Grid& grid) { m_grid = grid; }
-  /// Edges of the voxels on which the labels were made, mm (estimateNativeVoxels).
-  Vec3 nativeSpacing() const { return m_nativeVoxels.cwiseProduct(m_grid.spacing()); }
+  /// Replaces the grid of the only label map by one of equal size.
+  void setGrid(const Grid& grid) { m_maps.front().grid = grid; }
+  /// Edges of the voxels on which the labels of the first label map were made, mm
+  /// (estimateNativeVoxels).
+  Vec3 nativeSpacing() const { return findNativeSpacing(m_maps.front()); }
   const std::vector<SegmentInfo>& segments() const { return m_segments; }
 
   /// Statistics of each segment, in order; one pass over the labels per layer.
   std::vector<SegmentStatistics> statistics() const;
 
-  /// Removes a segment's voxels that a binary mask on this label map's lattice does not contain.
+  /// Removes a segment's voxels that a binary mask on its label map's lattice does not contain.
   void restrictSegment(const SegmentInfo& segment, const Mask& mask);
 
   /// Index in segments() of the segment whose id, else name, else label value is `selector`. Throws
@@ -81,20 +102,26 @@ public:
   /// leaves no voxel.
   Mask makeFocusMask(const std::vector<std::string>& selectors, const Grid& volume,
                      const MaskShaping& shaping = {}) const;
-  /// Union of some of segments(), cropped. Where a face of the labelmap coincides with a face of
+  /// Union of some of segments(), cropped. Where a face of a label map coincides with a face of
   /// `volume` (parallel, within half a voxel), the mask continues beyond it, as Mask.h describes.
-  /// Throws Error (input) if the segments have no voxel.
+  /// Segments of several lattices are resampled on the finest one, or on that of `volume` if it is
+  /// much coarser. Throws Error (input) if the segments have no voxel.
   Mask makeMask(const std::vector<SegmentInfo>& chosen, const Grid& volume,
                 const MaskShaping& shaping = {}) const;
 
 private:
+  /// Index of the label map with this layer.
+  std::size_t findMap(std::size_t layer) const;
+  /// Union of segments, interpolated between slices if `isShaped`.
+  Mask fillMask(const std::vector<SegmentInfo>& chosen, const Grid& volume, bool isShaped) const;
+  static Vec3 findNativeSpacing(const LabelMap& map) {
+    return map.nativeVoxels.cwiseProduct(map.grid.spacing());
+  }
+
   std::string m_source, m_namesSource;
   std::vector<Message> m_warnings;
-  Grid m_grid;
-  std::size_t m_layerCount;
-  Labels m_labels;
+  std::vector<LabelMap> m_maps; ///< at least one
   std::vector<SegmentInfo> m_segments;
-  Vec3 m_nativeVoxels;
 };
 
 /// Interleaves `count` layers, stored one after the other, into a Segmentation's order.
@@ -105,8 +132,10 @@ Segmentation::Labels interleaveLayers(Segmentation::Labels layers, std::size_t c
 ///   except in the oldest files, which have Segmentation_Extent and are in RAS. SegmentN_Extent is
 ///   ignored, since the labels show where a segment is.
 /// - A labelmap that readVolume can read: one segment "Segment_<value>" per value other than 0,
-///   named by `labels` or by the names found (LabelSearch.h).
+///   named by `labels` or by the names found (LabelSearch.h). A probability map has the segment 1,
+///   where it is at least 1/2.
 /// - A `.vtm` of closed surfaces, converted to labels on `reference`, the volume's grid.
+/// - A folder of masks (MaskFolder.h).
 /// Throws Error (input).
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference = nullptr,
                               const std::optional<std::string>& labels = {});

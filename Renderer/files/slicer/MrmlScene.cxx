@@ -45,6 +45,34 @@ std::vector<std::string> requireDataFiles(const MrmlScene& scene, const MrmlNode
   return names;
 }
 
+/// File of the color table with which a label map is displayed; nullopt: none in the scene's files.
+std::optional<std::string> findColorTable(const MrmlScene& scene, const MrmlNode& node) {
+  const MrmlNode* display = isLabelMap(node) ? scene.document.follow(node, "display") : nullptr;
+  const MrmlNode* colors = display ? scene.document.follow(*display, "color") : nullptr;
+  const std::vector<std::string> files =
+      colors ? listStorageFiles(scene, *colors) : std::vector<std::string>();
+  return files.empty() || !scene.files.contains(files.front()) ? std::nullopt
+                                                               : std::optional(files.front());
+}
+
+/// Returns read(file of the node, table of label names): `labels`, else the node's color table if
+/// it is readable and names one of the values.
+template <typename Read>
+auto readWithColorTable(MrmlScene& scene, const MrmlNode& node,
+                        const std::optional<std::string>& labels, Read&& read) {
+  std::vector<std::string> names = requireDataFiles(scene, node);
+  const std::optional<std::string> table = labels ? std::nullopt : findColorTable(scene, node);
+  names.resize(1);
+  if (table)
+    try {
+      return scene.files.read({names.front(), *table}, [&](const Paths& files) {
+        return read(files[0], std::optional(files[1].string()));
+      });
+    } catch (const Error&) { // of the table, else it occurs again
+    }
+  return scene.files.read(names, [&](const Paths& files) { return read(files.front(), labels); });
+}
+
 Rgb readColor(const MrmlNode& node, const std::string& attribute, const Rgb& fallback) {
   return node.triple(attribute).value_or(fallback).array().max(0.0).min(1.0);
 }
@@ -122,10 +150,10 @@ Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node, const
   if (volume)
     gridInNodeSpace.emplace(volume->size, nodeToWorld.inverse() * volume->indexToWorld);
   const MrmlNode* storage = isLabelMap(node) ? scene.document.follow(node, "storage") : nullptr;
-  Segmentation segmentation =
-      scene.files.read(requireDataFiles(scene, node), [&](const Paths& files) {
-        return readSegmentation(files.front(), gridInNodeSpace ? &*gridInNodeSpace : nullptr,
-                                labels);
+  Segmentation segmentation = readWithColorTable(
+      scene, node, labels,
+      [&](const std::filesystem::path& file, const std::optional<std::string>& names) {
+        return readSegmentation(file, gridInNodeSpace ? &*gridInNodeSpace : nullptr, names);
       });
   segmentation.setGrid(
       transformGrid(scene, node, nodeToWorld, applyStorageSettings(storage, segmentation.grid())));
@@ -134,9 +162,11 @@ Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node, const
 
 std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node,
                                                const std::optional<std::string>& labels) {
-  return scene.files.read(requireDataFiles(scene, node), [&](const Paths& files) {
-    return readSegmentInfos(files.front(), labels);
-  });
+  return readWithColorTable(
+      scene, node, labels,
+      [](const std::filesystem::path& file, const std::optional<std::string>& names) {
+        return readSegmentInfos(file, names);
+      });
 }
 
 std::map<std::string, bool> readSegmentVisibility(const MrmlScene& scene, const MrmlNode& node) {

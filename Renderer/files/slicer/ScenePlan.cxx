@@ -104,19 +104,12 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
 }
 
 const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneSelection& choice) {
-  const Nodes segmentations = document.findByTag("Segmentation");
-  const Nodes labelMaps = findNodes(document, isLabelMap);
-  Nodes both = segmentations;
-  both.insert(both.end(), labelMaps.begin(), labelMaps.end());
   if (choice.segmentation)
-    return findNamed(document, both, *choice.segmentation);
+    return findNamed(document, findNodes(document, isSegmentation), *choice.segmentation);
   if (!choice.needsSegmentation)
     return nullptr;
-  const Nodes visible = filterNodes(segmentations, [&](const MrmlNode& node) {
-    const MrmlNode* display = document.follow(node, "display");
-    return !display || isVisible(*display);
-  });
-  if (const MrmlNode* one = findSingle(document, {&visible, &segmentations, &labelMaps},
+  const std::vector<SegmentationNodes> lists = listSegmentations(document);
+  if (const MrmlNode* one = findSingle(document, {lists.data(), &lists[1], &lists[2]},
                                        "segmentations", ErrorCode::ambiguousSegmentation))
     return one;
   throw inputError(ErrorCode::segmentationRequired, document.source(),
@@ -237,6 +230,15 @@ void listUnused(const MrmlDocument& document, ScenePlan& plan) {
 }
 
 } // namespace
+
+std::vector<SegmentationNodes> listSegmentations(const MrmlDocument& document) {
+  const Nodes segmentations = document.findByTag("Segmentation");
+  const Nodes visible = filterNodes(segmentations, [&](const MrmlNode& node) {
+    const MrmlNode* display = document.follow(node, "display");
+    return !display || isVisible(*display);
+  });
+  return {visible, segmentations, findNodes(document, isLabelMap)};
+}
 
 ScenePlan planRender(const MrmlDocument& document, const SceneSelection& choice) {
   ScenePlan plan;

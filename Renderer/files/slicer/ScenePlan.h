@@ -31,6 +31,10 @@ struct ScenePlan {
   std::vector<std::string> ignored = {}; ///< "node: reason" for each unused node or setting
 };
 
+using SegmentationNodes = std::vector<const MrmlNode*>;
+/// Visible segmentations, all segmentations, and all label maps: in this order a focus is searched.
+std::vector<SegmentationNodes> listSegmentations(const MrmlDocument& document);
+
 /// Throws Error (input) if the choice is ambiguous (the message lists the candidates), there is no
 /// such volume, or a rendering technique has no equivalent in path tracing.
 ScenePlan planRender(const MrmlDocument& document, const SceneSelection& choice);

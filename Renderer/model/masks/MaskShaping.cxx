@@ -113,12 +113,26 @@ Mask applyMargin(Mask mask, double margin, const Grid& volume) {
   return makeRegionMask(mask, region, 1, std::move(voxels));
 }
 
+bool isSameLattice(const Grid& a, const Grid& b) {
+  constexpr double most = 0.05; // voxels, of rounding in files
+  const Affine aToB = b.worldToIndex * a.indexToWorld;
+  const Vec3 begin = aToB.translation(), shift = begin.array().round();
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = a.indexBox().corner(i);
+    if (!((aToB * corner - shift - corner).cwiseAbs().maxCoeff() <= most))
+      return false;
+  }
+  return true;
+}
+
 Size3 findOffset(const Mask& mask, const Mask& other) {
   const Vec3 offset = other.grid.worldToIndex * mask.grid.indexToWorld.translation();
   return offset.array().round().cast<std::int64_t>();
 }
 
 bool areAdjacent(const Mask& a, const Mask& b) {
+  if (!isSameLattice(a.grid, b.grid))
+    return false;
   const Size3 offset = findOffset(a, b), one = Size3::Ones();
   const Size3 first = (-offset - one).cwiseMax(0);
   const Size3 end = (b.grid.size - offset + one).cwiseMin(a.grid.size);

@@ -28,10 +28,13 @@ struct MaskShaping {
 /// the volume. Throws Error (output) for more than 2^31 voxels.
 Mask applyMargin(Mask mask, double margin, const Grid& volume);
 
+/// True if the voxel centers of `a` are also those of `b`, continued in all directions.
+bool isSameLattice(const Grid& a, const Grid& b);
+
 /// Voxel of `other` where a mask on the same lattice begins.
 Size3 findOffset(const Mask& mask, const Mask& other);
 
-/// True if masks on the same lattice have a voxel, or a face of voxels, in common.
+/// True if the masks are on the same lattice and have a voxel, or a face of voxels, in common.
 bool areAdjacent(const Mask& a, const Mask& b);
 
 /// Union of one or more masks on the same label map's lattice.

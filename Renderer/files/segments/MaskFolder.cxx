@@ -1,0 +1,233 @@
+#include "files/segments/MaskFolder.h"
+
+#include "base/Text.h"
+#include "files/medical/MedicalHeader.h"
+#include "files/segments/LabelSearch.h"
+#include "files/segments/MaskRuns.h"
+#include "io/InputRegistry.h"
+#include "io/MessageText.h"
+#include "io/SystemErrors.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+using Paths = std::vector<fs::path>;
+
+/// Files and folders in a folder, sorted.
+std::pair<Paths, Paths> listFolder(const fs::path& folder) {
+  Paths files, folders;
+  std::error_code failed;
+  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
+    if (std::error_code unknown; it->is_regular_file(unknown))
+      files.push_back(it->path());
+    else if (it->is_directory(unknown))
+      folders.push_back(it->path());
+  if (failed)
+    throw inputError(ErrorCode::unreadableFile, folder, "folder cannot be read: ", failed.message(),
+                     "; ", readHint(failed.value(), "check its name and its permissions"));
+  std::ranges::sort(files);
+  std::ranges::sort(folders);
+  return {files, folders};
+}
+
+Paths selectVolumeFiles(Paths files) {
+  std::erase_if(files, [](const fs::path& file) {
+    return file.filename().string().starts_with('.') || !findMedicalFormat(file);
+  });
+  return files;
+}
+
+bool isDicomFile(const fs::path& path) {
+  constexpr std::size_t preamble = 128;
+  std::array<char, preamble + 4> bytes{};
+  std::ifstream file(path, std::ios::binary);
+  return file.read(bytes.data(), bytes.size()) &&
+         std::string_view(bytes.data() + preamble, 4) == "DICM";
+}
+
+Error makeNoMasksError(const fs::path& folder) {
+  const auto [files, folders] = listFolder(folder);
+  if (std::ranges::any_of(files, isDicomFile))
+    return inputError(ErrorCode::unsupportedFile, folder,
+                      "is a folder of DICOM files, not of masks; export its segmentation as "
+                      ".seg.nrrd from 3D Slicer, or as masks with dcmqi's segimage2itkimage");
+  std::string hint = "give a folder with one structure per file (.nii.gz, .nii, .nrrd, .mha), as "
+                     "TotalSegmentator writes it";
+  for (const fs::path& subfolder : folders)
+    if (!selectVolumeFiles(listFolder(subfolder).first).empty()) {
+      hint = "give its folder " + toOneLine(subfolder.filename().string());
+      break;
+    }
+  return inputError(ErrorCode::unsupportedFile, folder, "is a folder without masks; ", hint);
+}
+
+/// Volume files of the folder. Throws Error (input) if there are none, or too many.
+Paths requireMaskFiles(const fs::path& folder) {
+  constexpr std::size_t maxFiles = 4096;
+  Paths files = listMaskFiles(folder);
+  if (files.empty())
+    throw makeNoMasksError(folder);
+  if (files.size() > maxFiles)
+    throw inputError(ErrorCode::limitExceeded, folder, "has more than ", maxFiles,
+                     " volume files; give a folder of masks");
+  registerInput(folder);
+  return files;
+}
+
+/// Segments by file; the id is the name unless several files have it.
+std::vector<SegmentInfo> makeSegments(const Paths& files) {
+  std::vector<SegmentInfo> segments;
+  std::multiset<std::string> names;
+  for (const fs::path& file : files) {
+    std::string name = stripExtensions(file).filename().string();
+    if (name.ends_with(".seg"))
+      name.resize(name.size() - 4);
+    names.insert(name);
+    segments.push_back(
+        {.id = name, .name = name, .labelValue = static_cast<std::int32_t>(segments.size() + 1)});
+  }
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (names.count(segments[i].name) > 1)
+      segments[i].id = files[i].filename().string();
+  return segments;
+}
+
+struct NamedMask {
+  SegmentInfo info;
+  MaskRuns mask;
+};
+
+/// Reads the files in parallel. Warns once about each problem of the geometry, and about each file
+/// that is no mask.
+std::vector<NamedMask> readMasks(const fs::path& folder, std::vector<Message>& warnings) {
+  const Paths files = requireMaskFiles(folder);
+  const std::vector<SegmentInfo> segments = makeSegments(files);
+  std::vector<std::optional<MaskRuns>> read(files.size());
+  std::vector<Message> problems(files.size());
+  tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
+    try {
+      read[i] = readMask(files[i]);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::input || error.message().code == ErrorCode::outOfMemory)
+        throw;
+      problems[i] = error.message();
+    }
+  });
+  std::vector<NamedMask> masks;
+  std::set<std::string> known;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!read[i]) {
+      problems[i].detail += " (it is left out)";
+      warnings.push_back(problems[i]);
+      continue;
+    }
+    for (const Message& warning : read[i]->warnings)
+      if (known.insert(warning.detail).second)
+        warnings.push_back(warning);
+    masks.push_back({segments[i], std::move(*read[i])});
+  }
+  if (masks.empty())
+    throw inputError(ErrorCode::unsupportedFile, folder,
+                     "is a folder without masks: ", warnings.front().subject, ' ',
+                     warnings.front().detail);
+  return masks;
+}
+
+/// True if the grids agree up to rounding in the files.
+bool isSameGrid(const Grid& a, const Grid& b) {
+  return a.size == b.size && isSameLattice(a, b) &&
+         (b.worldToIndex * a.indexToWorld.translation()).norm() < 0.5;
+}
+
+/// One label map of masks on one grid, in which they do not overlap.
+class Packing {
+public:
+  explicit Packing(const Grid& grid)
+      : m_grid(grid), m_labels(static_cast<std::size_t>(grid.voxelCount())) {}
+
+  /// Returns false if the mask overlaps one that was added, or its label value exceeds 8 bits.
+  bool add(const NamedMask& named) {
+    if (!std::in_range<std::uint8_t>(named.info.labelValue))
+      return false;
+    const auto isFree = [&](const MaskRun& run) {
+      return std::all_of(m_labels.begin() + run.begin, m_labels.begin() + run.end,
+                         [](auto label) { return label == 0; });
+    };
+    if (!std::ranges::all_of(named.mask.runs, isFree))
+      return false;
+    m_segments.push_back(named.info);
+    for (const auto& [begin, end] : named.mask.runs)
+      std::fill(m_labels.begin() + begin, m_labels.begin() + end,
+                static_cast<std::uint8_t>(named.info.labelValue));
+    return true;
+  }
+
+  Segmentation take(const std::string& source) {
+    return {source, m_grid, 1, std::move(m_labels), std::move(m_segments)};
+  }
+
+private:
+  Grid m_grid;
+  LargeArray<std::uint8_t> m_labels;
+  std::vector<SegmentInfo> m_segments;
+};
+
+} // namespace
+
+Paths listMaskFiles(const fs::path& folder) {
+  return selectVolumeFiles(listFolder(folder).first);
+}
+
+std::vector<SegmentInfo> readMaskFolderInfos(const fs::path& folder) {
+  return makeSegments(requireMaskFiles(folder));
+}
+
+Segmentation readMaskFolder(const fs::path& folder) {
+  std::vector<Message> warnings;
+  std::vector<NamedMask> masks = readMasks(folder, warnings);
+  std::optional<Segmentation> all;
+  const auto add = [&](Segmentation part) {
+    if (all)
+      all->add(std::move(part));
+    else
+      all.emplace(std::move(part));
+  };
+  const auto isOnGrid = [](const NamedMask& mask, const Grid& grid) {
+    return isSameGrid(mask.mask.grid, grid);
+  };
+  while (!masks.empty()) {
+    const Grid grid = masks.front().mask.grid;
+    const auto rest = std::stable_partition(
+        masks.begin(), masks.end(), [&](const NamedMask& mask) { return isOnGrid(mask, grid); });
+    std::optional<Packing> packing;
+    if (rest - masks.begin() > 1) // else the whole grid for one mask would be a waste
+      packing.emplace(grid);
+    std::vector<Segmentation> overlapping;
+    for (auto mask = masks.begin(); mask != rest; ++mask) {
+      if (packing && packing->add(*mask))
+        continue;
+      auto [cropped, labels] = labelMask(mask->mask, mask->info.labelValue);
+      overlapping.emplace_back(folder.string(), cropped, 1, std::move(labels),
+                               std::vector{mask->info});
+    }
+    if (packing) // the first one has its segments
+      add(packing->take(folder.string()));
+    std::ranges::for_each(overlapping, [&](Segmentation& one) { add(std::move(one)); });
+    masks.erase(masks.begin(), rest);
+  }
+  all->addWarnings(warnings);
+  return std::move(*all);
+}
+
+} // namespace fenestra
