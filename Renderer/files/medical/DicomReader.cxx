@@ -25,13 +25,6 @@ constexpr std::string_view padding(" \0", 2); ///< of values, to an even length
 
 // ---- header fields, in the order in which the child sends them
 
-/// Numbers of a backslash-separated list of decimal strings; empty if one is not a number.
-std::vector<double> parseDecimals(std::string text) {
-  std::replace(text.begin(), text.end(), '\\', ' ');
-  std::erase(text, '+');
-  return parseNumbers(text).value_or(std::vector<double>{});
-}
-
 void parseField(const std::string& text, std::string& member) {
   member = text;
 }
@@ -84,14 +77,8 @@ constexpr std::array dicomFields = {
 
 // ---- in the child process
 
-bool isDicom(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 132> begin{};
-  return file.read(begin.data(), begin.size()) && std::string_view(begin.data() + 128, 4) == "DICM";
-}
-
 std::string makeHeaderReply(const std::string& path) {
-  if (!isDicom(path))
+  if (!isDicomFile(path))
     return {};
   std::set<Tag> tags = {Tag(0x0008, 0x0016)}; // SOPClassUID
   for (const HeaderField& field : dicomFields)
@@ -163,6 +150,33 @@ std::int64_t extractStoredValue(const DicomHeader& h, const std::string& voxels,
 }
 
 } // namespace
+
+bool isDicomFile(const Path& path) {
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown))
+    return false; // a pipe would block
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 132> begin{};
+  return file.read(begin.data(), begin.size()) && std::string_view(begin.data() + 128, 4) == "DICM";
+}
+
+std::vector<double> parseDecimals(std::string text) {
+  std::replace(text.begin(), text.end(), '\\', ' ');
+  std::erase(text, '+');
+  return parseNumbers(text).value_or(std::vector<double>{});
+}
+
+DicomAxes parseAxes(const std::vector<double>& o, const std::string& source) {
+  constexpr double tolerance = 1e-2; // real files round their direction cosines
+  if (o.size() == 6) {
+    const Vec3 row(o[0], o[1], o[2]), column(o[3], o[4], o[5]);
+    if (std::abs(row.norm() - 1.0) <= tolerance && std::abs(column.norm() - 1.0) <= tolerance &&
+        std::abs(row.dot(column)) <= tolerance)
+      return {row.normalized(), column.normalized()};
+  }
+  throw fieldError(source, "ImageOrientationPatient",
+                   "must be two orthogonal directions; export the series again");
+}
 
 DicomReader::DicomReader() : m_reader(dicomJob) {}
 

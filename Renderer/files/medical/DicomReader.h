@@ -2,6 +2,7 @@
 // Reads headers and voxels of DICOM files with GDCM, in a sandboxed child process. GDCM allocates
 // any length that a file declares, and terminates its process on some damaged files.
 
+#include "base/Vector.h"
 #include "io/Sandbox.h"
 
 #include <cstdint>
@@ -37,6 +38,22 @@ inline bool isImage(const DicomHeader& header) {
 inline std::uint64_t imageBytes(const DicomHeader& header) {
   return std::uint64_t{header.rows} * header.columns * (header.bits / 8);
 }
+
+/// True for a file with DICOM's preamble and "DICM", whatever its extension.
+bool isDicomFile(const std::filesystem::path& path);
+
+/// Numbers of a backslash-separated list of decimal strings; empty if one is not a number.
+std::vector<double> parseDecimals(std::string text);
+
+/// Orthogonal unit vectors along a row and along a column of an image, LPS.
+struct DicomAxes {
+  Vec3 row, column;
+  Vec3 normal() const { return row.cross(column).normalized(); }
+};
+
+/// Interprets ImageOrientationPatient; `source` is the file name in messages. Throws Error (input)
+/// unless it is two orthogonal directions.
+DicomAxes parseAxes(const std::vector<double>& orientation, const std::string& source);
 
 /// Reads DICOM files through one child process.
 class DicomReader {

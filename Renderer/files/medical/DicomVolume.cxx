@@ -62,23 +62,6 @@ Slice openSlice(DicomReader& files, const Path& path) {
 
 // ---- all files
 
-/// Orthogonal row and column directions, LPS.
-struct Axes {
-  Vec3 row, column;
-  Vec3 normal() const { return row.cross(column).normalized(); }
-};
-
-Axes readAxes(const Slice& slice) {
-  const std::vector<double>& o = slice.header.orientation;
-  const Vec3 row(o[0], o[1], o[2]), column(o[3], o[4], o[5]);
-  constexpr double tolerance = 1e-2; // real files round their direction cosines
-  if (std::abs(row.norm() - 1.0) > tolerance || std::abs(column.norm() - 1.0) > tolerance ||
-      std::abs(row.dot(column)) > tolerance)
-    throw fieldError(slice.path, "ImageOrientationPatient",
-                     "must be two orthogonal directions; export the series again");
-  return {row.normalized(), column.normalized()};
-}
-
 void checkConsistent(const std::vector<Slice>& slices) {
   const Slice& first = slices.front();
   const auto isNear = [](const std::vector<double>& a, const std::vector<double>& b, double error) {
@@ -119,7 +102,7 @@ void checkGaps(const std::vector<Slice>& slices) {
 }
 
 /// Step from one slice to the next, LPS mm. Warns about uneven slices of the volume `name`.
-Vec3 computeStep(const std::vector<Slice>& slices, const Axes& axes, const std::string& name,
+Vec3 computeStep(const std::vector<Slice>& slices, const DicomAxes& axes, const std::string& name,
                  std::vector<Message>& warnings) {
   if (slices.size() == 1)
     return axes.normal();
@@ -145,7 +128,7 @@ Vec3 computeStep(const std::vector<Slice>& slices, const Axes& axes, const std::
   return step;
 }
 
-Grid makeGrid(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step) {
+Grid makeGrid(const std::vector<Slice>& slices, const DicomAxes& axes, const Vec3& step) {
   const DicomHeader& h = slices.front().header;
   for (const Slice& slice : slices)
     if (!(slice.position.array().abs() < maxLength).all())
@@ -193,7 +176,7 @@ Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
     throw inputError(ErrorCode::missingFile, name,
                      "names no DICOM file; give the files of the series");
   checkConsistent(slices);
-  const Axes axes = readAxes(slices.front());
+  const DicomAxes axes = parseAxes(slices.front().header.orientation, slices.front().path.string());
   for (Slice& slice : slices)
     slice.depth = slice.position.dot(axes.normal());
   std::ranges::stable_sort(slices, {}, &Slice::depth);

@@ -1,6 +1,7 @@
 #include "files/segments/ClosedSurface.h"
 
 #include "base/Error.h"
+#include "files/segments/LabelLayers.h"
 #include "files/segments/VtkSurface.h"
 #include "io/InputRegistry.h"
 #include "io/JsonNode.h"
@@ -112,52 +113,6 @@ Grid cropGrid(const Grid& reference, const Box& bounds) {
   return {(upper - lower).array().cast<std::int64_t>().max(0) + 1, indexToWorld};
 }
 
-/// Label layers, stored one after the other.
-class Layers {
-public:
-  using Label = std::int16_t;
-
-  Layers(const Size3& size, const Path& path) : m_size(size), m_path(path) {}
-
-  /// Adds a segment to the first layer in which it overlaps no other; returns that layer.
-  std::size_t add(const std::vector<VoxelRun>& runs, Label label) {
-    std::size_t layer = 0;
-    while (layer < count && !isFree(layer, runs))
-      ++layer;
-    if (layer == count) {
-      constexpr std::int64_t maxLabels = std::int64_t{1} << 31;
-      const std::int64_t size = m_size.prod() * static_cast<std::int64_t>(++count);
-      if (size > maxLabels)
-        throw inputError(ErrorCode::limitExceeded, m_path,
-                         "has segments that overlap in too many layers; ", exportHint);
-      labels.resize(static_cast<std::size_t>(size));
-    }
-    for (const VoxelRun& run : runs)
-      std::ranges::fill(voxels(layer, run), label);
-    return layer;
-  }
-
-  std::size_t count = 0;
-  LargeArray<Label> labels;
-
-private:
-  std::span<Label> voxels(std::size_t layer, const VoxelRun& run) {
-    const std::int64_t z = run.z + m_size.z() * static_cast<std::int64_t>(layer);
-    const std::int64_t begin = run.first + m_size.x() * (run.y + m_size.y() * z);
-    return std::span(labels).subspan(static_cast<std::size_t>(begin),
-                                     static_cast<std::size_t>(run.last - run.first));
-  }
-
-  bool isFree(std::size_t layer, const std::vector<VoxelRun>& runs) {
-    return std::ranges::all_of(runs, [&](const VoxelRun& run) {
-      return std::ranges::all_of(voxels(layer, run), [](Label label) { return label == 0; });
-    });
-  }
-
-  Size3 m_size;
-  const Path& m_path;
-};
-
 } // namespace
 
 Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
@@ -169,7 +124,7 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
   const Grid grid = reference
                         ? cropGrid(*reference, computeBounds(surfaces, reference->worldToIndex))
                         : makeGrid(bounds);
-  Layers layers(grid.size, path);
+  LabelLayers layers(grid.size, path.string());
   std::vector<SegmentInfo> segments;
   for (Surface& surface : surfaces) {
     for (Vec3& point : surface.shape.points)
@@ -178,11 +133,11 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
     if (!runs)
       throw inputError(path, "segment \"", sanitize(surface.info.name),
                        "\": has a surface with holes, or one too complex; ", exportHint);
-    surface.info.layer = layers.add(*runs, static_cast<Layers::Label>(surface.info.labelValue));
+    surface.info.layer = layers.add(*runs, static_cast<std::int16_t>(surface.info.labelValue));
     segments.push_back(surface.info);
   }
-  return {path.string(), grid, layers.count,
-          interleaveLayers(std::move(layers.labels), layers.count), std::move(segments)};
+  const std::size_t layerCount = layers.count();
+  return {path.string(), grid, layerCount, layers.takeInterleaved(), std::move(segments)};
 }
 
 std::vector<SegmentInfo> readClosedSurfaceInfos(const Path& path) {

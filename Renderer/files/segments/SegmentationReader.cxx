@@ -2,9 +2,11 @@
 
 #include "base/Error.h"
 #include "files/formats/TextHeader.h"
+#include "files/medical/DicomReader.h"
 #include "files/medical/MedicalImage.h"
 #include "files/medical/SampleStore.h"
 #include "files/segments/ClosedSurface.h"
+#include "files/segments/DicomSegments.h"
 #include "files/segments/LabelSearch.h"
 #include "files/segments/MaskFolder.h"
 #include "files/segments/MaskRuns.h"
@@ -243,6 +245,8 @@ std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
     return readMaskFolderInfos(path);
   if (lowercaseExtension(path) == ".vtm")
     return readClosedSurfaceInfos(path);
+  if (isDicomFile(path))
+    return readDicomSegmentInfos(path);
   const std::string source = path.string();
   std::vector<SegmentInfo> segments;
   readMedicalImage(path, Components::any, [&](const MedicalImage& image, const SampleSource&) {
@@ -265,6 +269,10 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
   if (lowercaseExtension(path) == ".vtm") {
     rejectLabels(source, labelTable);
     return readClosedSurfaces(path, reference);
+  }
+  if (isDicomFile(path)) {
+    rejectLabels(source, labelTable);
+    return readDicomSegments(path, reference);
   }
   MedicalImage image;
   Segmentation::Labels labels;

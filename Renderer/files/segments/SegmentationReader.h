@@ -136,6 +136,7 @@ Segmentation::Labels interleaveLayers(Segmentation::Labels layers, std::size_t c
 ///   where it is at least 1/2.
 /// - A `.vtm` of closed surfaces, converted to labels on `reference`, the volume's grid.
 /// - A folder of masks (MaskFolder.h).
+/// - A DICOM SEG or RTSTRUCT file, whatever its extension (DicomSegments.h).
 /// Throws Error (input).
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference = nullptr,
                               const std::optional<std::string>& labels = {});

@@ -1,0 +1,39 @@
+#pragma once
+// Distributes segments that may overlap to the layers of a label map.
+
+#include "files/segments/NativeGrid.h"
+#include "model/masks/Voxelize.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace fenestra {
+
+class LabelLayers {
+public:
+  using Label = std::int16_t;
+
+  /// For a label map of `size` voxels; `source` is the file name in messages.
+  LabelLayers(const Size3& size, std::string source) : m_size(size), m_source(std::move(source)) {}
+
+  std::size_t count() const { return m_count; }
+
+  /// Adds a segment to the first layer in which it overlaps no other; returns that layer. Throws
+  /// Error (input) if all layers together exceed 2^31 labels.
+  std::size_t add(const std::vector<VoxelRun>& runs, Label label);
+
+  /// Moves the labels out, with a voxel's layers adjacent.
+  Labels takeInterleaved();
+
+private:
+  std::span<Label> voxels(std::size_t layer, const VoxelRun& run);
+  bool isFree(std::size_t layer, const std::vector<VoxelRun>& runs);
+
+  Size3 m_size;
+  std::string m_source;
+  std::size_t m_count = 0;
+  LargeArray<Label> m_labels; ///< layer after layer
+};
+
+} // namespace fenestra
