@@ -391,7 +391,7 @@ Segmentation makeFrameLabels(DicomObjectReader& files, const Path& path,
   }
   Segmentation segmentation(path.string(), stack.grid, layerCount, std::move(labels),
                             std::move(segments));
-  segmentation.setNamesSource({}, stack.warnings);
+  segmentation.addWarnings(stack.warnings);
   return segmentation;
 }
 

@@ -1,6 +1,7 @@
 #include "files/segments/MaskFolder.h"
 
 #include "base/Text.h"
+#include "files/medical/DicomReader.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/segments/LabelSearch.h"
 #include "files/segments/MaskRuns.h"
@@ -11,8 +12,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -48,20 +47,11 @@ Paths selectVolumeFiles(Paths files) {
   return files;
 }
 
-bool isDicomFile(const fs::path& path) {
-  constexpr std::size_t preamble = 128;
-  std::array<char, preamble + 4> bytes{};
-  std::ifstream file(path, std::ios::binary);
-  return file.read(bytes.data(), bytes.size()) &&
-         std::string_view(bytes.data() + preamble, 4) == "DICM";
-}
-
 Error makeNoMasksError(const fs::path& folder) {
   const auto [files, folders] = listFolder(folder);
   if (std::ranges::any_of(files, isDicomFile))
     return inputError(ErrorCode::unsupportedFile, folder,
-                      "is a folder of DICOM files, not of masks; export its segmentation as "
-                      ".seg.nrrd from 3D Slicer, or as masks with dcmqi's segimage2itkimage");
+                      "is a folder of DICOM files, not of masks; name its SEG or RTSTRUCT file");
   std::string hint = "give a folder with one structure per file (.nii.gz, .nii, .nrrd, .mha), as "
                      "TotalSegmentator writes it";
   for (const fs::path& subfolder : folders)

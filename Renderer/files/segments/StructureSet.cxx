@@ -312,7 +312,7 @@ Segmentation makeContourLabels(const std::string& source, const DicomStructureSe
   const std::size_t layerCount = layers.count();
   Segmentation segmentation(source, cropped, layerCount, layers.takeInterleaved(),
                             std::move(segments));
-  segmentation.setNamesSource({}, std::move(warnings));
+  segmentation.addWarnings(warnings);
   return segmentation;
 }
 
