@@ -8,6 +8,7 @@
 #include "program/ErrorAdvice.h"
 #include "program/MergedOptions.h"
 #include "program/Messages.h"
+#include "program/ShellCommand.h"
 #include "program/UsageError.h"
 #include "scene/Inspection.h"
 
@@ -363,9 +364,7 @@ std::string formatInspection(const Inspection& inspection) {
     text +=
         formatSection(refused ? "It would use, as far as can be determined" : "A render would use",
                       formatRender(use));
-  text += formatSection("Example", join(inspection["examples"], "", [](const Json& command) {
-                          return "  " + toOneLine(command) + "\n"; // unwrapped, to be copied
-                        }));
+  text += formatSection("Example", join(inspection["examples"], "", formatExample));
   return text + formatSection("Warnings", formatList(inspection["warnings"])) +
          formatSection("Ignored", formatList(inspection["ignored"]));
 }
@@ -385,9 +384,8 @@ const Option inspectTable[] = {
      ValueSpec::choice({"auto", "bar", "xml", "none"})},
     {"json", "", inspectGroup,
      "Print one JSON document: volumes, segmentations, volumeRenderings, volumeProperties, rois, "
-     "views, cameras, transforms, series, others; materials (the library); examples (commands); "
-     "render (what it would "
-     "use), refused (why it would fail, else null), warnings, ignored; units mm, RAS, ml"},
+     "views, cameras, transforms, series, others; materials (the library); examples; render (what "
+     "it would use), refused (why it would fail, else null), warnings, ignored; units mm, RAS, ml"},
 };
 
 /// Arguments of `merged` that were not given, hence come from the scene.

@@ -10,6 +10,7 @@
 #include "program/FileNames.h"
 #include "program/MergedOptions.h"
 #include "program/Messages.h"
+#include "program/ShellCommand.h"
 #include "program/about/Version.h"
 
 #include <algorithm>
@@ -17,15 +18,6 @@
 
 namespace fenestra {
 namespace {
-
-/// Quotes an argument for a POSIX shell.
-std::string quoteForShell(const std::string& argument) {
-  const char* const plain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
-  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
-    return argument;
-  return concat("'", replaceAll(argument, "'", "'\\''"), "'");
-}
 
 /// Options that reproduce the camera.
 std::string formatCamera(const CameraPose& pose) {

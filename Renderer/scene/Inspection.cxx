@@ -110,15 +110,6 @@ Json libraryJson() {
   return all;
 }
 
-/// An argument of a shell command, in quotes if needed.
-std::string quoteForShell(const std::string& text) {
-  const bool isPlain = !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
-    return std::isalnum(c) != 0 ||
-           std::string_view("_./+=:@%-").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  return isPlain ? text : concat("'", replaceAll(text, "'", "'\\''"), "'");
-}
-
 /// Volume beside a segmentation: the only volume file in its folder. A placeholder if there is none
 /// or several.
 std::string findVolumeBeside(const std::filesystem::path& segmentation) {
@@ -134,20 +125,17 @@ std::string findVolumeBeside(const std::filesystem::path& segmentation) {
                            : std::filesystem::path("VOLUME");
 }
 
-/// Adds a command that renders the first segment with voxels. `volume`: the input.
+/// Adds a render of the first segment with voxels. `volume`: the input.
 void addExample(const std::string& volume, const Json& segmentation, Json& report) {
-  const std::string file = segmentation["name"];
   for (const Json& segment : segmentation["segments"])
     if (segment["voxels"] > 0) {
-      report["examples"].push_back(concat(
-          "fenestra ", quoteForShell(volume), " --segmentation ", quoteForShell(file), " --focus ",
-          quoteForShell(replaceAll(segment["id"].get<std::string>(), ",", "\\,")),
-          " --output image.png"));
+      report["examples"].push_back(
+          {{"volume", volume}, {"segmentation", segmentation["name"]}, {"focus", segment["id"]}});
       return;
     }
 }
 
-/// A folder of masks is no input of a render, but of its option --segmentation.
+/// A folder of masks is no input of a render, but its segmentation.
 Json inspectMaskFolder(const RenderRequest& request) {
   Json report = makeReport(request, "segmentation");
   report["segmentations"].push_back(

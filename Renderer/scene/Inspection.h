@@ -27,7 +27,7 @@ namespace fenestra {
 ///     series [uid, number, description, modality, files]
 ///     others {tag: count}
 ///     materials [name, kind, color (like a segment's material)]: the library
-///     examples [command]: for the segmentations that are files
+///     examples [volume, segmentation, focus]: renders, for the segmentations that are files
 ///     render: null if the choice of nodes is ambiguous, else what a render uses, with null for
 ///       unreadable parts: volume {id, name, size, spacing, center, voxelType, range, transforms
 ///       [id, innermost first]}, look {source ("volumeProperty" | "volumeDisplay" | "preset" |

@@ -369,8 +369,15 @@ TEST_F(RenderCommand, FindsTheFocusByIdNameAndLabelValue) {
   EXPECT_EQ(byId.count("clip.Z"), 1u);
   EXPECT_EQ(byId, renderFocus({"--focus", "Bone\\, left"}));
   EXPECT_EQ(byId, renderFocus({"--focus", "1"}));
-  EXPECT_EQ(byId, renderFocus({"--focus", "A,B"}));
-  EXPECT_EQ(byId, renderFocus({"--focus", "A", "--focus=B"}));
+  for (const Arguments& both : {Arguments{"--focus", "A,B"}, {"--focus", "A", "--focus=B"}}) {
+    Arguments arguments = {"--segmentation", "segments.seg.nrrd", "--output", "image.exr"};
+    arguments.insert(arguments.end(), both.begin(), both.end());
+    const Outcome outcome = renderVolume(arguments);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(outcome.err.starts_with("fenestra: warning: segments.seg.nrrd:")) << outcome.err;
+    EXPECT_TRUE(outcome.err.ends_with(": B (Void)\n")) << "it has no voxel";
+    EXPECT_EQ(byId, readImage(folder / "image.exr").channels);
+  }
 }
 
 TEST_F(RenderCommand, FileNamesMayLookLikeOptionsOrCommands) {

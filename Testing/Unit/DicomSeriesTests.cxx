@@ -27,7 +27,7 @@ struct SliceFile {
   Vec3 position = Vec3::Zero();
   Mat3 axes = Mat3::Identity(); ///< columns: along a row, along a column, normal
   double rowSpacing = 2.0, columnSpacing = 0.5;
-  std::string uid = "1.2.3", number = "7", description = "head";
+  std::string uid = "1.2.3", number = "7", description = "head", modality = "CT";
   std::string intercept = "0", slope = "1";
   std::int16_t first = 0; ///< first of the consecutive stored values
   bool compress = false;  ///< lossless JPEG 2000
@@ -57,7 +57,7 @@ Path write(const Path& path, const SliceFile& slice) {
   const auto set = [&](const char* tag, const std::string& text) {
     itk::EncapsulateMetaData<std::string>(io->GetMetaDataDictionary(), tag, text);
   };
-  set("0008|0060", "CT");
+  set("0008|0060", slice.modality);
   set("0008|103e", slice.description);
   set("0020|000e", slice.uid);
   set("0020|0011", slice.number);
@@ -216,6 +216,7 @@ TEST(DicomSeries, SelectorChoosesAmongSeries) {
   writeStack(folder, {}, 2, 1);
   writeStack(folder, {.uid = "1.2.4", .number = "12", .description = "neck"}, 3, 1);
   writeStack(folder, {.uid = "1.2.5", .number = "8", .description = "neck"}, 4, 1);
+  writeStack(folder, {.uid = "1.2.6", .number = "9", .modality = "SEG"}, 1, 1); // no volume
   const auto series = findDicomSeries(folder.path());
   ASSERT_EQ(series.size(), 3u);
   EXPECT_EQ(series[0].number, "7");

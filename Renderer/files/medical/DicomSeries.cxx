@@ -66,7 +66,8 @@ std::vector<DicomSeries> findDicomSeries(const Path& folder) {
   std::map<std::string, DicomSeries> byUid;
   for (const Path& file : listCandidates(folder)) {
     const auto header = files.readHeader(file);
-    if (!header || header->seriesUid.empty() || (header->isComplete && !isImage(*header)))
+    const bool isVolume = header && header->modality != "SEG"; // a segmentation has pixels, too
+    if (!isVolume || header->seriesUid.empty() || (header->isComplete && !isImage(*header)))
       continue;
     DicomSeries& series = byUid[header->seriesUid];
     if (series.files.empty())

@@ -79,7 +79,7 @@ MaskRuns readMask(const std::filesystem::path& path) {
         if (!runs)
           throw inputError(ErrorCode::unsupportedFile, path,
                            "is no mask of one structure: it has several values; give a label map "
-                           "by itself, as --segmentation");
+                           "by itself as the segmentation");
         mask = {image.grid, std::move(*runs), image.warnings};
       });
   return mask;
