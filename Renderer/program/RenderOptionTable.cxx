@@ -47,8 +47,9 @@ struct RenderOptionTable {
 
   std::vector<Option> rows = {
       {OptionNames("segmentation", 's'), "FILE|NAME", sceneGroup,
-       "Segmentation of the volume: a .seg.nrrd, a label map or probability map, a folder of masks "
-       "with one structure per file, or a segmentation of the scene, by name or id [the scene's]",
+       "Segmentation of the volume: a .seg.nrrd, DICOM SEG or RTSTRUCT file, a label map or "
+       "probability map, a folder of masks with one structure per file, or a segmentation of the "
+       "scene, by name or id [the scene's]",
        ValueSpec::labels().bind(scene.segmentation), OverrideGroup::focus},
       {"labels", "FILE|NAME", sceneGroup,
        "Names of label values: a .ctbl, .txt, .label, .json, .csv or .tsv file, or "
