@@ -365,8 +365,9 @@ Mask Segmentation::fillMask(const std::vector<SegmentInfo>& chosen, const Grid& 
     byMap[findMap(segment.layer)].push_back(segment);
   std::vector<std::vector<Mask>> byLattice;
   std::vector<Grid> grids; // of the label maps
-  for (const auto& [index, segments] : byMap) {
-    const LabelMap& map = m_maps[index];
+  for (const auto& part : byMap) {
+    const LabelMap& map = m_maps[part.first];
+    const std::vector<SegmentInfo>& segments = part.second;
     Mask mask;
     std::visit(
         [&](const auto& labels) {
