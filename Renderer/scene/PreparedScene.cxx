@@ -105,7 +105,7 @@ void PreparedScene::prepare() {
 InputChoice PreparedScene::chooseSegmentation() const {
   const RenderRequest& r = m_request;
   InputChoice choice{r.volume, r.segmentation, r.labels};
-  if (!r.segmentation && m_input.hasSeveralSegmentations()) // else another focus reads nothing anew
+  if (!r.segmentation && m_input.hasSeveralSegmentations()) // else another focus reads nothing
     choice.focus = r.focus;
   return choice;
 }
