@@ -106,7 +106,8 @@ inline dicom::Element makePixels(const SegFile& file, dicom::Syntax syntax) {
         if (file.bits == 1) {
           if (at % 8 == 0)
             pixels.value += '\0';
-          pixels.value.back() = static_cast<char>(pixels.value.back() | value << at++ % 8);
+          pixels.value.back() = static_cast<char>(static_cast<unsigned char>(pixels.value.back()) |
+                                                  value << at++ % 8);
         } else {
           bytes += static_cast<char>(value & 255U);
           if (file.bits == 16)
