@@ -44,7 +44,8 @@ std::vector<double> getDecimals(const DataSet& data, const Tag& tag) {
 std::vector<double> getShorts(const DataSet& data, const Tag& tag) {
   const std::string bytes = getBytes(data, tag);
   std::vector<std::uint16_t> values(bytes.size() / sizeof(std::uint16_t));
-  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(std::uint16_t));
+  if (!values.empty()) // else its pointer may be null
+    std::memcpy(values.data(), bytes.data(), values.size() * sizeof(std::uint16_t));
   return {values.begin(), values.end()};
 }
 
