@@ -86,7 +86,7 @@ TEST(Islands, WithAPreservedRunRemainWhole) {
         const bool isRow = v.x() >= 5 && v.x() <= 7 && v.y() == 1 && v.z() == 1;
         return isBlock || isRow || v.z() == 5 ? 300.0 : 0.0;
       });
-  const std::int64_t voxel = linearIndex({2, 2, 2}, volume.grid.size);
+  const auto voxel = static_cast<std::int64_t>(linearIndex({2, 2, 2}, volume.grid.size));
   const Islands islands = findIslands(volume, 100.0, 9.0, [=](const RunOfIsland& run) {
     return run.begin <= voxel && voxel < run.end;
   });
