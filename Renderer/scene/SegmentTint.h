@@ -50,9 +50,8 @@ std::vector<bool> findNonEmpty(const Handle<SegmentsInput>& segments);
 /// keeps the volume's own colors. `focus`: ids, names or label values. `skin`: from findSkin();
 /// null or empty: none; ignored if a segment is skin. `transparent`: segments to show as solid
 /// bodies with their surface at the segment's, and the color of the material at the median; null:
-/// none. Throws Error (input) for a change to an
-/// unknown segment, for context colors without a focus, if no segment has a voxel, and for more
-/// than 256 components.
+/// none. Throws Error (input) for a change to an unknown segment, for context colors without a
+/// focus, if no segment has a voxel, and for more than 256 components.
 TintPlan makeTintPlan(const Handle<SegmentsInput>& segments,
                       const Handle<std::vector<bool>>& hasVoxels,
                       const Handle<NamedMaterials>& materials,

@@ -24,7 +24,8 @@ SlicePlanes findPlanes(const std::vector<ContourPlane>& planes, double z,
                        const ContourReach& reach) {
   const auto after = std::ranges::lower_bound(planes, z, {}, &ContourPlane::z);
   const auto upper = static_cast<std::size_t>(after - planes.begin());
-  const bool hasUpper = upper<planes.size(), hasLower = upper> 0;
+  const bool hasUpper = upper < planes.size();
+  const bool hasLower = upper > 0;
   if (hasUpper && planes[upper].z == z)
     return {upper, upper};
   if (hasUpper && hasLower) {
