@@ -89,6 +89,23 @@ bool isFolder(const std::filesystem::path& path) {
   return getFileType(path) == std::filesystem::file_type::directory;
 }
 
+FolderContent listFolder(const std::filesystem::path& folder) {
+  FolderContent content;
+  std::error_code failed;
+  for (std::filesystem::directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed))
+    if (std::error_code unknown; entry->is_regular_file(unknown))
+      content.files.push_back(entry->path());
+    else if (entry->is_directory(unknown))
+      content.folders.push_back(entry->path());
+  if (failed)
+    throw inputError(ErrorCode::unreadableFile, folder, "folder cannot be read: ", failed.message(),
+                     "; ", readHint(failed.value(), "check its name and its permissions"));
+  std::ranges::sort(content.files);
+  std::ranges::sort(content.folders);
+  return content;
+}
+
 void requireFile(const std::filesystem::path& path, const std::string& hint,
                  std::uint64_t maxBytes) {
   if (hasZeroByte(path))

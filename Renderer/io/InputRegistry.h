@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace fenestra {
 
@@ -28,6 +29,12 @@ std::optional<FileId> fileId(int descriptor);
 /// Throws Error (input) if the system cannot determine it.
 bool fileExists(const std::filesystem::path& path);
 bool isFolder(const std::filesystem::path& path);
+
+struct FolderContent {
+  std::vector<std::filesystem::path> files, folders; ///< sorted
+};
+/// Files and folders directly in `folder`; none is registered. Throws Error (input).
+FolderContent listFolder(const std::filesystem::path& folder);
 
 /// Registers `path` as an input. Throws Error (input) unless `path` is a readable file of at most
 /// `maxBytes` bytes, inside the folder of an InputConfinement if there is one, and not a result of

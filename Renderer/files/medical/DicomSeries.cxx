@@ -4,7 +4,6 @@
 #include "files/medical/DicomReader.h"
 #include "io/InputRegistry.h"
 #include "io/MessageText.h"
-#include "io/SystemErrors.h"
 
 #include <algorithm>
 #include <map>
@@ -17,31 +16,14 @@ namespace fs = std::filesystem;
 using Path = fs::path;
 using Paths = std::vector<Path>;
 
-/// Files and folders in a folder, sorted. Registers the files as inputs.
-std::pair<Paths, Paths> listFolder(const Path& folder) {
-  Paths files, folders;
-  std::error_code failed;
-  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
-    std::error_code unknown;
-    if (it->is_regular_file(unknown)) {
-      requireFile(it->path(), "give only the folder");
-      files.push_back(it->path());
-    } else if (it->is_directory(unknown))
-      folders.push_back(it->path());
-  }
-  if (failed)
-    throw inputError(ErrorCode::unreadableFile, folder, "folder cannot be read: ", failed.message(),
-                     "; ", readHint(failed.value(), "check its name and its permissions"));
-  std::ranges::sort(files);
-  std::ranges::sort(folders);
-  return {files, folders};
-}
-
+/// Files in the folder; if there are none, those in its subfolders. Registers them as inputs.
 Paths listCandidates(const Path& folder) {
   auto [files, folders] = listFolder(folder);
   if (files.empty())
     for (const Path& subfolder : folders)
-      std::ranges::move(listFolder(subfolder).first, std::back_inserter(files));
+      std::ranges::move(listFolder(subfolder).files, std::back_inserter(files));
+  for (const Path& file : files)
+    requireFile(file, "give only the folder");
   return files;
 }
 

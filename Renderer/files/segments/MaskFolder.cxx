@@ -7,7 +7,6 @@
 #include "files/segments/MaskRuns.h"
 #include "io/InputRegistry.h"
 #include "io/MessageText.h"
-#include "io/SystemErrors.h"
 
 #include <tbb/parallel_for.h>
 
@@ -22,23 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
-
-/// Files and folders in a folder, sorted.
-std::pair<Paths, Paths> listFolder(const fs::path& folder) {
-  Paths files, folders;
-  std::error_code failed;
-  for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
-    if (std::error_code unknown; it->is_regular_file(unknown))
-      files.push_back(it->path());
-    else if (it->is_directory(unknown))
-      folders.push_back(it->path());
-  if (failed)
-    throw inputError(ErrorCode::unreadableFile, folder, "folder cannot be read: ", failed.message(),
-                     "; ", readHint(failed.value(), "check its name and its permissions"));
-  std::ranges::sort(files);
-  std::ranges::sort(folders);
-  return {files, folders};
-}
 
 Paths selectVolumeFiles(Paths files) {
   std::erase_if(files, [](const fs::path& file) {
@@ -55,7 +37,7 @@ Error makeNoMasksError(const fs::path& folder) {
   std::string hint = "give a folder with one structure per file (.nii.gz, .nii, .nrrd, .mha), as "
                      "TotalSegmentator writes it";
   for (const fs::path& subfolder : folders)
-    if (!selectVolumeFiles(listFolder(subfolder).first).empty()) {
+    if (!selectVolumeFiles(listFolder(subfolder).files).empty()) {
       hint = "give its folder " + toOneLine(subfolder.filename().string());
       break;
     }
@@ -176,7 +158,7 @@ private:
 } // namespace
 
 Paths listMaskFiles(const fs::path& folder) {
-  return selectVolumeFiles(listFolder(folder).first);
+  return selectVolumeFiles(listFolder(folder).files);
 }
 
 std::vector<SegmentInfo> readMaskFolderInfos(const fs::path& folder) {
