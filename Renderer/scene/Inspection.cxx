@@ -121,7 +121,7 @@ std::string findVolumeBeside(const std::filesystem::path& segmentation) {
   std::erase_if(files, [&](const auto& file) {
     return std::filesystem::equivalent(file, segmentation, unknown);
   });
-  return files.size() == 1 ? (segmentation / "..").lexically_normal() / files.front().filename()
+  return files.size() == 1 ? (segmentation / ".." / files.front().filename()).lexically_normal()
                            : std::filesystem::path("VOLUME");
 }
 
@@ -135,26 +135,27 @@ void addExample(const std::string& volume, const Json& segmentation, Json& repor
     }
 }
 
-/// A folder of masks is no input of a render, but its segmentation.
-Json inspectMaskFolder(const RenderRequest& request) {
-  Json report = makeReport(request, "segmentation");
-  report["segmentations"].push_back(
-      inspectSegmentationFile(request.input, nullptr, request.labels));
-  addExample(findVolumeBeside(request.input), report["segmentations"].back(), report);
+/// A folder of masks is no input of a render, but its segmentation. nullopt: it has
+/// DICOM series, or most of its volume files are no masks.
+std::optional<Json> inspectMaskFolder(const RenderRequest& request) {
+  Json report = makeReport(request, "segmentation"), unused;
+  const std::size_t files = listMaskFiles(request.input).size();
+  if (files == 0 || tryRead([&] { return findDicomSeries(request.input); }, unused))
+    return std::nullopt;
+  const Json folder =
+      inspectSegmentationFile(request.input, nullptr, request.labels, report["warnings"]);
+  if (2 * folder["segments"].size() < files)
+    return std::nullopt;
+  addExample(findVolumeBeside(request.input), folder, report);
+  report["segmentations"].push_back(folder);
   return report;
 }
 
-/// True for a folder with masks and without DICOM.
-bool isMaskFolder(const std::filesystem::path& path) {
-  Json unused;
-  return isFolder(path) && !listMaskFiles(path).empty() &&
-         !tryRead([&] { return findDicomSeries(path); }, unused);
-}
-
 Json inspectFiles(const RenderRequest& request, const Input& input) {
-  if (isMaskFolder(request.input))
-    return inspectMaskFolder(request);
   const bool isDicom = isFolder(request.input);
+  if (isDicom)
+    if (auto masks = inspectMaskFolder(request))
+      return std::move(*masks);
   Json report = makeReport(request, isDicom ? "dicom" : "volume");
   if (isDicom)
     for (const DicomSeries& series : findDicomSeries(request.input))
@@ -167,13 +168,15 @@ Json inspectFiles(const RenderRequest& request, const Input& input) {
   Json& segmentations = report["segmentations"];
   const Grid* grid = volume.grid ? &*volume.grid : nullptr;
   if (!isDicom && (!grid || volume.isLikelyLabelMap || hasSegmentationName(request.input))) {
-    segmentations.push_back(inspectSegmentationFile(request.input, grid, request.labels));
+    segmentations.push_back(
+        inspectSegmentationFile(request.input, grid, request.labels, report["warnings"]));
     if (!grid && !segmentations.back()["problem"].is_null())
       throw *volume.failure;
     report["kind"] = "segmentation";
   }
   if (request.segmentation) {
-    segmentations.push_back(inspectSegmentationFile(*request.segmentation, grid, request.labels));
+    segmentations.push_back(
+        inspectSegmentationFile(*request.segmentation, grid, request.labels, report["warnings"]));
     segmentations.back()["used"] = true;
     if (grid)
       report["render"]["segmentation"] = nullIfEmpty(*request.segmentation);
@@ -299,12 +302,15 @@ void addSegments(const Segmentation& segmentation, const std::map<std::string, b
 }
 
 Json inspectSegmentationFile(const std::filesystem::path& path, const Grid* volume,
-                             const std::optional<std::string>& labels) {
+                             const std::optional<std::string>& labels, Json& warnings) {
   Json json = nodeJson("", path.string());
   json.update(segmentationMembers("file", true));
   if (const auto segmentation =
-          tryRead([&] { return readSegmentation(path, volume, labels); }, json["problem"]))
+          tryRead([&] { return readSegmentation(path, volume, labels); }, json["problem"])) {
     addSegments(*segmentation, {}, json);
+    for (const Message& warning : segmentation->warnings())
+      warnings.push_back(warning);
+  }
   return json;
 }
 

@@ -46,9 +46,9 @@ Json segmentationMembers(const char* kind, bool shown);
 void addSegments(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
                  Json& json);
 /// Inspects a segmentation file. `volume`: grid on which closed surfaces are voxelized; null: none.
-/// `labels`: RenderRequest::labels.
+/// `labels`: RenderRequest::labels. Appends to `warnings`.
 Json inspectSegmentationFile(const std::filesystem::path& path, const Grid* volume,
-                             const std::optional<std::string>& labels);
+                             const std::optional<std::string>& labels, Json& warnings);
 
 Inspection inspectScene(const RenderRequest& request, const Input& input);
 

@@ -268,7 +268,8 @@ private:
           makeMessage(ErrorCode::unknownName, path, "neither a node of the scene nor a file");
       return;
     }
-    Json segmentation = inspectSegmentationFile(path, volumeGrid(), m_request.labels);
+    Json segmentation =
+        inspectSegmentationFile(path, volumeGrid(), m_request.labels, m_report["warnings"]);
     segmentation["used"] = true;
     m_report["render"]["segmentation"] = nullIfEmpty(path.string());
     m_report["segmentations"].push_back(std::move(segmentation));

@@ -78,6 +78,31 @@ TEST_F(InspectCommand, ListsSegmentationGivenBesideVolume) {
   expectStated(missing["segmentations"][0]["problem"], "none.nrrd:");
 }
 
+TEST_F(InspectCommand, ExampleForAFolderOfMasksRuns) {
+  std::filesystem::create_directory(folder / "two masks");
+  for (const auto& [name, voxels] : {std::pair("heart", 0), {"left lung", 8}})
+    folder.write(std::string("two masks/") + name + ".nrrd",
+                 NrrdText{"4 4 4", "uint8"}.encode(std::string(64 - voxels, '\0') +
+                                                   std::string(voxels, '\1')));
+  std::filesystem::remove(folder / "segments.seg.nrrd"); // else the volume is not the only one
+  const Json report = inspect({"two masks"});
+  EXPECT_EQ(report["kind"], "segmentation");
+  EXPECT_EQ(report["segmentations"][0]["segments"].size(), 2u);
+  EXPECT_EQ(report["segmentations"][0]["segments"][0]["voxels"], 0);
+  ASSERT_EQ(report["examples"].size(), 1u);
+  EXPECT_EQ(
+      report["examples"][0],
+      (Json{{"volume", "volume.nrrd"}, {"segmentation", "two masks"}, {"focus", "left lung"}}));
+  EXPECT_NE(run({"inspect", "two masks"}, folder.path())
+                .out.find("fenestra volume.nrrd --segmentation 'two masks' --focus 'left lung' "
+                          "--output image.png\n"),
+            std::string::npos);
+  const Outcome both = renderVolume({"--segmentation", "two masks", "--focus", "left lung,heart"});
+  EXPECT_EQ(both.status, 0) << both.messages;
+  expectStated(both.messages, " | warning | two masks | heart");
+  EXPECT_EQ(renderVolume({"--segmentation", "two masks", "--focus", "heart"}).status, 3);
+}
+
 TEST_F(InspectCommand, ListsSceneNodesAndThoseRendered) {
   const Json report = inspectScene(volumeNode + segmentationNode + settingNodes);
   EXPECT_EQ(report["kind"], "scene");

@@ -174,6 +174,8 @@ TEST_F(MaterialsCommand, FilesAndChangesOverrideTheLibrary) {
                     "Bone, left: material=bone, color=#00ff00"})[0],
             albedo({"--materials", "library", "--material", "1: color=#00ff00"})[0]);
   EXPECT_LT(albedo({"--materials", "library", "--material", "1: color=#00ff00"})[0], library[0]);
+  EXPECT_EQ(albedo({"--material", "1: color=#00ff00"}),
+            albedo({"--materials", "library", "--material", "1: color=#00ff00"}));
 }
 
 TEST_F(MaterialsCommand, ContextOfAFileAppliesAroundAFocus) {
