@@ -38,7 +38,7 @@ std::optional<std::string> fromBase64(std::string_view text) {
     for (const int shift : {16, 8, 0})
       bytes += static_cast<char>(group >> shift & 0xff);
   }
-  bytes.resize(bytes.size() - padding);
+  bytes.erase(bytes.size() - padding);
   return bytes;
 }
 
