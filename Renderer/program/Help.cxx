@@ -5,6 +5,7 @@
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/RenderOptions.h"
+#include "program/UsageError.h"
 #include "program/about/Version.h"
 
 #include <algorithm>
