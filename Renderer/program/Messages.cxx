@@ -1,5 +1,6 @@
 #include "program/Messages.h"
 
+#include "base/Text.h"
 #include "io/MessageText.h"
 
 #include <atomic>
