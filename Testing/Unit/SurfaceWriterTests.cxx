@@ -4,6 +4,7 @@
 #include "clip/mesh/SurfaceWriter.h"
 #include "files/segments/VtkSurface.h"
 
+#include "ErrorChecks.h"
 #include "TemporaryFolder.h"
 
 #include <gtest/gtest.h>
