@@ -27,6 +27,7 @@ enum class ErrorCode : std::uint8_t {
   // Volumes and scenes
   ambiguousSegmentation, ///< the scene has several
   ambiguousVolume,       ///< the scene or folder has several
+  assumedFrame,          ///< warning: the first of several
   assumedGeometry,       ///< warning: the file states no or contradictory positions
   ignoredRequest,        ///< warning: a stored part of the request is not used
   ignoredSceneSetting,   ///< warning: Slicer renders it differently
@@ -37,6 +38,8 @@ enum class ErrorCode : std::uint8_t {
   removedHounsfieldOffset,  ///< warning
   segmentationAsVolume,
   segmentationRequired, ///< the request has a focus
+  unknownForm,          ///< of a NIfTI header
+  unknownFrame,
 
   // Segments and their names
   ambiguousPreset,

@@ -176,6 +176,7 @@ std::string describe(const Json& part) {
       {"{files}"},
       {"{size} voxels of {spacing} mm"},
       {"{voxelType} from {range}, center {center}"},
+      {"one of {frames} frames"},
       {"transformed by {transforms}"},
       {"{}", "source", "volumeProperty"},
       {"the window of {}, which the rendering follows", "source", "volumeDisplay"},
@@ -375,6 +376,8 @@ constexpr const char* inspectGroup = "Inspect";
 const Option inspectTable[] = {
     {"volume", "NAME", inspectGroup,
      "As for render: volume of a scene, or series of a DICOM folder"},
+    {"frame", "N", inspectGroup, "As for render: time of a series or 4D file"},
+    {"nifti-form", "auto|qform|sform", inspectGroup, "As for render: which places a NIfTI volume"},
     {{"segmentation", 's'},
      "FILE|NAME",
      inspectGroup,
@@ -422,17 +425,17 @@ int inspectCommand(int argc, char** argv, int first) {
   configureMachine(*values);
   const Input input(*values->text("INPUT"));
   OptionValues given(renderSyntax.options);
-  for (const char* name : {"INPUT", "volume", "segmentation", "labels"})
+  for (const char* name : {"INPUT", "volume", "frame", "nifti-form", "segmentation", "labels"})
     if (const auto value = values->text(name))
       given.add(name, *value);
   const SceneOptions stored = mergeSceneOptions(given, input);
   const OptionValues& merged = stored.values;
   RenderRequest request;
   request.input = input.path();
-  request.volume = merged.text("volume");
+  request.volume = readVolumeChoice(merged);
   request.segmentation = merged.text("segmentation");
   request.labels = merged.text("labels");
-  if (request.volume && !input.document() && !isFolder(input.path()))
+  if (request.volume.name && !input.document() && !isFolder(input.path()))
     throw usageError("--volume: only for a scene or DICOM folder with several volumes; omit it");
   Inspection inspection = inspectInput(request, input);
   if (Inspection& use = inspection["render"]; !use.is_null())

@@ -94,7 +94,7 @@ OrganPreset choosePreset(const OptionValues& given, const Input& input,
   };
   return findMatchingPreset(
       presets, candidates, names->source, listNonEmpty, [&](Modality modality) {
-        return isPlausibleModality(modality, input.volume(given.text("volume")).volume);
+        return isPlausibleModality(modality, input.volume(readVolumeChoice(given)).volume);
       });
 }
 

@@ -244,7 +244,8 @@ public:
       target = list(name);
     else if constexpr (std::is_same_v<Target, std::vector<std::filesystem::path>>)
       std::ranges::copy(texts(name), std::back_inserter(target));
-    else if constexpr (std::is_integral_v<Target>)
+    else if constexpr (std::is_integral_v<Target> ||
+                       std::is_same_v<Target, std::optional<std::size_t>>)
       target = static_cast<Target>(*integer(name));
     else if constexpr (std::is_assignable_v<Target&, Vec3>)
       target = triple(name);

@@ -297,14 +297,22 @@ struct RenderOptionTable {
        ValueSpec::integer(0, 1024).bind(settings.threads), OverrideGroup::process},
       {"volume", "NAME", outputGroup,
        "Volume of a scene (name or id), or series of a DICOM folder (number or uid) [as in Slicer]",
-       ValueSpec::text().bind(
-           scene.volume)}, // Slicer takes one file, hence color alone in its panel.
+       ValueSpec::text().bind(scene.volume.name)},
+      {"frame", "N", outputGroup,
+       "Frame of a series over time or of a 4D file, from 0 [0, with a warning if there are more]",
+       ValueSpec::integer(0, unlimited).bind(scene.volume.frame)},
+      {"nifti-form", "FORM", outputGroup,
+       "Geometry of a NIfTI volume: its sform or qform; auto: the sform, unless only the qform "
+       "agrees with the segmentation",
+       ValueSpec::choice(
+           scene.volume.niftiForm,
+           {{"auto", std::nullopt}, {"qform", NiftiForm::qform}, {"sform", NiftiForm::sform}})},
       {"layers", "L,...", outputGroup,
        "Channels of .exr: color, depth, clip, albedo, normal, error, samples, and with --denoise "
        "on denoised, expected; of .nrrd: color, depth and denoised (separate files) [all]",
        ValueSpec::list()
            .bind(options.layers, readLayers)
-           .withDefault("color")
+           .withDefault("color") // Slicer takes one file
            .withNamedValues({allLayers.begin(), allLayers.end()}),
        OverrideGroup::process},
       {"surface", "FILE", outputGroup,
@@ -372,6 +380,14 @@ RenderOptions readOptions(const OptionValues& values) {
     if (option.spec.store && values.has(option.name))
       option.spec.store(values, option.name);
   return table.options;
+}
+
+VolumeChoice readVolumeChoice(const OptionValues& values) {
+  OptionValues chosen(renderSyntax.options);
+  for (const char* name : {"volume", "frame", "nifti-form"})
+    if (const auto value = values.text(name))
+      chosen.add(name, *value);
+  return readOptions(chosen).scene.volume;
 }
 
 bool isClipOption(const Option& option) {

@@ -21,7 +21,7 @@ bool hasMaterials(const RenderRequest& scene) {
 void checkInput(const OptionValues& values, const RenderRequest& scene) {
   const bool isScene = isSceneFile(scene.input),
              usesLabels = !scene.focus.empty() || hasMaterials(scene);
-  if (scene.volume && !isScene && !isFolder(scene.input))
+  if (scene.volume.name && !isScene && !isFolder(scene.input))
     throw usageError("--volume: only for a scene or DICOM folder with several volumes; omit it");
   if (!scene.focus.empty() && !scene.segmentation && !isScene)
     throw usageError("--focus: requires --segmentation FILE, which holds the segments");

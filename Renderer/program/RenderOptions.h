@@ -76,6 +76,8 @@ bool isAppearanceOption(const Option& option);
 /// Stores each value where its table row says, without further checks. Throws Error (usage) for
 /// values out of range.
 RenderOptions readOptions(const OptionValues& values);
+/// As readOptions, of the options that choose the volume.
+VolumeChoice readVolumeChoice(const OptionValues& values);
 
 /// Resolves progress for quiet commands. Throws Error (usage) for both quiet and verbose.
 RenderOptions resolveProgress(RenderOptions options);

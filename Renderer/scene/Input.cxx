@@ -18,12 +18,11 @@ ScenePlan makePlan(const MrmlScene& scene, const InputChoice& choice, bool needs
   return planRender(scene.document, {choice.volume, choice.segmentation, needsSegmentation});
 }
 
-VolumeInput readVolumeFiles(const std::filesystem::path& path,
-                            const std::optional<std::string>& choice) {
+VolumeInput readVolumeFiles(const std::filesystem::path& path, const VolumeChoice& choice) {
   if (!isFolder(path))
-    return {readVolume(path), {path.string()}};
-  const DicomSeries series = chooseSeries(findDicomSeries(path), choice, path.string());
-  VolumeInput input{readDicomVolume(series)};
+    return {readVolume(path, choice), {path.string()}};
+  const DicomSeries series = chooseSeries(findDicomSeries(path), choice.name, path.string());
+  VolumeInput input{readDicomVolume(series, choice)};
   for (const auto& file : series.files)
     input.files.push_back(file.string());
   return input;
@@ -118,11 +117,11 @@ MrmlScene* Input::scene() const {
   return m_state->withScene([](MrmlScene& scene) { return &scene; });
 }
 
-VolumeInput Input::volume(const std::optional<std::string>& choice) const {
+VolumeInput Input::volume(const VolumeChoice& choice) const {
   if (!m_state->isScene)
     return readVolumeFiles(path(), choice);
   return m_state->withScene([&](MrmlScene& scene) {
-    Volume volume = readSceneVolume(scene, *makePlan(scene, {choice}, false).volume);
+    Volume volume = readSceneVolume(scene, *makePlan(scene, {choice.name}, false).volume, choice);
     return VolumeInput{std::move(volume), scene.files.usedFiles()};
   });
 }

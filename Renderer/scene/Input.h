@@ -81,8 +81,7 @@ public:
   /// The opened scene, shared, for single-threaded use; null if the input is not a Slicer scene.
   MrmlScene* scene() const;
 
-  /// `choice`: a volume of the scene, or a DICOM series of the folder.
-  VolumeInput volume(const std::optional<std::string>& choice) const;
+  VolumeInput volume(const VolumeChoice& choice) const;
   /// `followsCamera`: also reads the scene's camera.
   SceneSettings settings(const std::optional<std::string>& volume, bool followsCamera) const;
   /// Transfer function of the volume's rendering in Slicer. `range`: of the voxels; needed for

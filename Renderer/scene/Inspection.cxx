@@ -232,6 +232,7 @@ Json volumeJson(const Volume& volume, const std::string& id) {
           {"center", volume.grid.worldCenter()},
           {"voxelType", voxelTypes[volume.voxels.index()]},
           {"range", {volume.minimum, volume.maximum}},
+          {"frames", volume.frameCount > 1 ? Json(volume.frameCount) : Json(nullptr)},
           {"transforms", Json::array()}};
 }
 

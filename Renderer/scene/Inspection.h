@@ -29,10 +29,10 @@ namespace fenestra {
 ///     materials [name, kind, color (like a segment's material)]: the library
 ///     examples [volume, segmentation, focus]: renders, for the segmentations that are files
 ///     render: null if the choice of nodes is ambiguous, else what a render uses, with null for
-///       unreadable parts: volume {id, name, size, spacing, center, voxelType, range, transforms
-///       [id, innermost first]}, look {source ("volumeProperty" | "volumeDisplay" | "preset" |
-///       "range"), id, name}, crop {id, name, edges, center}, camera {id, name, POSE}, background
-///       {view, bottom, top}, segmentation (id or file in which a focus is searched),
+///       unreadable parts: volume {id, name, size, spacing, center, voxelType, range, frames,
+///       transforms [id, innermost first]}, look {source ("volumeProperty" | "volumeDisplay" |
+///       "preset" | "range"), id, name}, crop {id, name, edges, center}, camera {id, name, POSE},
+///       background {view, bottom, top}, segmentation (id or file in which a focus is searched),
 ///       segmentationProblem (why it is ambiguous), stored [option stored in the scene by
 ///       Fenestra's extension]
 ///     refused: null, or the error message of a render
@@ -47,9 +47,9 @@ using Inspection = nlohmann::ordered_json;
 void to_json(nlohmann::ordered_json& json, const Message& message);
 void from_json(const nlohmann::ordered_json& json, Message& message);
 
-/// `input`: of request.input. Of the request, only volume and segmentation are used. Reads the
-/// files that a render would read, and all segmentations, cameras and transforms (names only after
-/// the first 64 of a kind). Throws Error if the input is no scene, volume or segmentation.
+/// `input`: of request.input. Of the request, only volume, segmentation and labels are used. Reads
+/// the files that a render would read, and all segmentations, cameras and transforms (names only
+/// after the first 64 of a kind). Throws Error if the input is no scene, volume or segmentation.
 Inspection inspectInput(const RenderRequest& request, const Input& input);
 
 } // namespace fenestra

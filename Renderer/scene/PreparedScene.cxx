@@ -49,7 +49,7 @@ void PreparedScene::prepare() {
   if (r.transfer)
     m_namedTransfer.get(*r.transfer, m_input);
   const auto raw = m_volume.get(m_input, r.volume);
-  const auto settings = m_settings.get(m_input, r.volume, r.view.isSceneCamera());
+  const auto settings = m_settings.get(m_input, r.volume.name, r.view.isSceneCamera());
   if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
     m_segments.get(m_input, chooseSegmentation(), raw->volume.grid);
   if (r.focusStyle.hasOrganMargin && !r.focus.empty() &&
@@ -60,7 +60,7 @@ void PreparedScene::prepare() {
   const auto focus = m_focus.get(currentSegments(), m_hasVoxels.result(), r.focus,
                                  r.focusStyle.shaping, raw->volume.grid);
   if (!r.transfer)
-    m_sceneTransfer.get(m_input, r.volume, {raw->volume.minimum, raw->volume.maximum});
+    m_sceneTransfer.get(m_input, r.volume.name, {raw->volume.minimum, raw->volume.maximum});
   if (m_segments.result() &&
       needsContent(raw, m_namedTransfer.result(), m_sceneTransfer.result(), r.transferModality))
     m_content.get(raw, m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus);
@@ -104,7 +104,7 @@ void PreparedScene::prepare() {
 
 InputChoice PreparedScene::chooseSegmentation() const {
   const RenderRequest& r = m_request;
-  InputChoice choice{r.volume, r.segmentation, r.labels};
+  InputChoice choice{r.volume.name, r.segmentation, r.labels};
   if (!r.segmentation && m_input.hasSeveralSegmentations()) // else another focus reads nothing
     choice.focus = r.focus;
   return choice;

@@ -3,6 +3,7 @@
 
 #include "base/Error.h"
 #include "clip/surface/ClippingSurface.h"
+#include "files/medical/VolumeChoice.h"
 #include "integrator/render/Render.h"
 #include "model/camera/Camera.h"
 #include "model/filtering/SmoothingRequest.h"
@@ -92,7 +93,7 @@ inline constexpr const char* libraryMaterials = "library";
 
 struct RenderRequest {
   std::filesystem::path input;                  ///< a volume, a DICOM folder, or a Slicer scene
-  std::optional<std::string> volume = {};       ///< node or DICOM series, if there are several
+  VolumeChoice volume = {};                     ///< if there are several
   std::optional<std::string> segmentation = {}; ///< node of the scene, or a file
   std::optional<std::string> labels = {};       ///< names of label values (LabelSearch.h)
   std::vector<std::string> focus = {};          ///< ids, names or label values

@@ -54,7 +54,7 @@ private:
 
   /// Plans a render with a focus, or without one if only its segmentation is ambiguous.
   void makePlan() {
-    SceneSelection choice{m_request.volume, m_request.segmentation, true};
+    SceneSelection choice{m_request.volume.name, m_request.segmentation, true};
     const auto tryPlan = [&] { return planRender(document(), choice); };
     Json problem;
     m_plan = tryRead(tryPlan, problem);
@@ -82,7 +82,8 @@ private:
       m_report["warnings"] = (*scene)->warnings();
     } else {
       if (const auto volume =
-              tryRead([&] { return readSceneVolume(m_scene, *m_plan->volume); }, m_unused))
+              tryRead([&] { return readSceneVolume(m_scene, *m_plan->volume, m_request.volume); },
+                      m_unused))
         addVolume(*volume, nameOrEmpty(m_plan->property), render);
       if (m_plan->camera)
         pose = readCamera(*m_plan->camera, m_unused);

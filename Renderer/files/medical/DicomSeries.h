@@ -1,6 +1,7 @@
 #pragma once
 // Finds the DICOM series in a folder and reads one of them as a volume.
 
+#include "files/medical/VolumeChoice.h"
 #include "model/volume/Volume.h"
 
 #include <filesystem>
@@ -32,9 +33,10 @@ DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
 /// from even spacing by more than 2 % of the step. Throws Error (input) that names the file for
 /// missing or duplicate slices, deviations over half a step or half a pixel, inconsistent sizes or
 /// orientations, multi-frame or color images, missing geometry, and damaged or non-DICOM files.
-Volume readDicomVolume(const DicomSeries& series);
+Volume readDicomVolume(const DicomSeries& series, const VolumeChoice& choice = {});
 
 /// Reads the files that a scene lists. `name` becomes the volume's name and is used in messages.
-Volume readDicomVolume(const std::vector<std::filesystem::path>& files, const std::string& name);
+Volume readDicomVolume(const std::vector<std::filesystem::path>& files, const std::string& name,
+                       const VolumeChoice& choice = {});
 
 } // namespace fenestra

@@ -167,7 +167,8 @@ std::optional<Modality> parseModality(const std::string& text) {
   return text == "US" ? std::optional(Modality::us) : std::nullopt;
 }
 
-Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
+Volume readSlices(const std::vector<Path>& paths, const std::string& name,
+                  const VolumeChoice& choice) {
   DicomReader files;
   std::vector<Slice> slices;
   for (const Path& path : paths)
@@ -181,6 +182,7 @@ Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
     slice.depth = slice.position.dot(axes.normal());
   std::ranges::stable_sort(slices, {}, &Slice::depth);
   std::vector<Message> warnings;
+  chooseFrame(name, choice.frame, 1, warnings);
   const Grid grid = makeGrid(slices, axes, computeStep(slices, axes, name, warnings));
   Volume volume = makeVolume(name, grid, readAll(files, slices));
   std::ranges::move(warnings, std::back_inserter(volume.warnings));
@@ -194,16 +196,17 @@ Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
 
 } // namespace
 
-Volume readDicomVolume(const std::vector<Path>& files, const std::string& name) {
+Volume readDicomVolume(const std::vector<Path>& files, const std::string& name,
+                       const VolumeChoice& choice) {
   try {
-    return readSlices(files, name);
+    return readSlices(files, name, choice);
   } catch (const std::bad_alloc&) {
     throw inputError(ErrorCode::outOfMemory, name, "does not fit into memory; crop or resample it");
   }
 }
 
-Volume readDicomVolume(const DicomSeries& series) {
-  return readDicomVolume(series.files, series.files.front().parent_path().string());
+Volume readDicomVolume(const DicomSeries& series, const VolumeChoice& choice) {
+  return readDicomVolume(series.files, series.files.front().parent_path().string(), choice);
 }
 
 } // namespace fenestra

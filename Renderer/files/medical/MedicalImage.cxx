@@ -159,8 +159,9 @@ std::map<std::string, std::string> readTextFields(const itk::ImageIOBase& io) {
 }
 
 /// Reads a single volume; only NRRD can hold a list of components.
-void readNifti(const std::filesystem::path& path, const SampleConsumer& consume) {
-  const NiftiHeader header = readNiftiHeader(path);
+void readNifti(const std::filesystem::path& path, const SampleConsumer& consume,
+               const VolumeChoice& choice) {
+  const NiftiHeader header = readNiftiHeader(path, choice.niftiForm);
   const std::size_t axes = header.size.size();
   if (axes < 3)
     throw inputError(ErrorCode::unsupportedFile, path, "is an image of ", axes,
@@ -176,15 +177,18 @@ void readNifti(const std::filesystem::path& path, const SampleConsumer& consume)
   const Mat3& axesToRas = header.indexToRas.linear();
   checkGeometry(path, axesToRas, axesToRas.columnNorms(), header.indexToRas.translation());
   MedicalImage image{.grid = {size, header.indexToRas}, .warnings = header.warnings};
+  chooseFrame(path.string(), choice.frame, 1, image.warnings);
   image.extensions = readNiftiExtensions(path, header);
   consume(image, openNiftiSamples(path, header, static_cast<std::size_t>(size.prod())));
 }
 
 void readChecked(const std::filesystem::path& path, MedicalFormat format, Components allowed,
-                 const SampleConsumer& consume) {
+                 const SampleConsumer& consume, const VolumeChoice& choice) {
   const StoredSamples stored = locateSamples(path, format); // rejects what would crash ITK
   if (format == MedicalFormat::nifti)
-    return readNifti(path, consume);
+    return readNifti(path, consume, choice);
+  if (choice.niftiForm)
+    throw inputError(ErrorCode::unknownForm, path, "is no NIfTI file, so it has no qform or sform");
   const SuppressItkOutput suppress;
   const auto io = makeImageIo(format);
   io->SetFileName(path.string());
@@ -200,6 +204,7 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
   if (!stored.hasSpacing)
     image.warnings.push_back(
         makeMessage(ErrorCode::assumedGeometry, path, "has no spacing; 1 mm voxels are assumed"));
+  chooseFrame(path.string(), choice.frame, 1, image.warnings);
   if (image.hasFrames)
     image.components = countFrames(*io);
   consume(image, makeSampleSource(path, stored, *io));
@@ -230,7 +235,7 @@ void rejectMisnamed(const std::filesystem::path& path) {
 } // namespace
 
 void readMedicalImage(const std::filesystem::path& path, Components allowed,
-                      const SampleConsumer& consume) {
+                      const SampleConsumer& consume, const VolumeChoice& choice) {
   requireFile(path, "give a volume file in it");
   const auto format = findMedicalFormat(path);
   if (lowercaseExtension(path) == ".vtm")
@@ -241,7 +246,7 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
         "has an unknown extension; give a .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd file");
   rejectMisnamed(path);
   try {
-    readChecked(path, *format, allowed, consume);
+    readChecked(path, *format, allowed, consume, choice);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

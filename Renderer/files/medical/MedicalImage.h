@@ -5,6 +5,7 @@
 
 #include "base/Error.h"
 #include "files/medical/SampleSource.h"
+#include "files/medical/VolumeChoice.h"
 #include "model/volume/Grid.h"
 
 #include <filesystem>
@@ -31,8 +32,9 @@ using SampleConsumer = std::function<void(const MedicalImage&, const SampleSourc
 /// Calls `consume` once, with an image of three axes and real scalars; further axes of size 1 are
 /// dropped. Several components per voxel are read only if `allowed`: a NRRD list, or frames along
 /// the fourth axis. Throws a one-line Error (input) for other images, missing or damaged files,
-/// singular geometry, and (before memory is allocated) more samples than the file can hold.
+/// singular geometry, a choice that the file does not offer, and (before memory is allocated) more
+/// samples than the file can hold.
 void readMedicalImage(const std::filesystem::path& path, Components allowed,
-                      const SampleConsumer& consume);
+                      const SampleConsumer& consume, const VolumeChoice& choice = {});
 
 } // namespace fenestra

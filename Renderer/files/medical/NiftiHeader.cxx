@@ -192,7 +192,8 @@ Affine chooseForm(const NiftiFields& fields, const Vec3& pixdim, std::vector<Mes
   return isSheared ? qform : readSform(fields, pixdim);
 }
 
-Affine readNiftiGeometry(const NiftiFields& fields, std::vector<Message>& warnings) {
+Affine readNiftiGeometry(const NiftiFields& fields, std::optional<NiftiForm> form,
+                         std::vector<Message>& warnings) {
   const auto qform = fields.number<std::int16_t>(252), sform = fields.number<std::int16_t>(254);
   // pixdim, quaternion and offset, rows of the sform
   if (!fields.hasFiniteNumbers(76, 4) || (qform > 0 && !fields.hasFiniteNumbers(256, 6)) ||
@@ -204,9 +205,12 @@ Affine readNiftiGeometry(const NiftiFields& fields, std::vector<Message>& warnin
   for (int axis = 0; axis < 3; ++axis)
     pixdim[axis] = pixdim[axis] == 0.0 ? 1.0 : std::abs(pixdim[axis]);
   Affine map(lpsToRas * Mat3::Diagonal(pixdim));
-  if (qform > 0 && sform > 0)
+  if (form && (form == NiftiForm::qform ? qform : sform) <= 0)
+    throw inputError(ErrorCode::unknownForm, fields.path(), "has no ",
+                     form == NiftiForm::qform ? "qform" : "sform");
+  if (!form && qform > 0 && sform > 0)
     map = chooseForm(fields, pixdim, warnings);
-  else if (sform > 0)
+  else if (sform > 0 && form != NiftiForm::qform)
     map = readSform(fields, pixdim);
   else if (qform > 0)
     map = readQform(fields, pixdim);
@@ -220,7 +224,8 @@ Affine readNiftiGeometry(const NiftiFields& fields, std::vector<Message>& warnin
 
 } // namespace
 
-NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::path& path) {
+NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::path& path,
+                             std::optional<NiftiForm> form) {
   const NiftiFields fields(bytes, path);
   NiftiHeader header;
   header.size = readNiftiSize(fields);
@@ -237,7 +242,7 @@ NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::pat
   header.rescaling = readNiftiRescaling(fields);
   // Samples follow the header and the four bytes that flag extensions.
   header.offset = static_cast<std::int64_t>(std::max(offset, 352.0));
-  header.indexToRas = readNiftiGeometry(fields, header.warnings);
+  header.indexToRas = readNiftiGeometry(fields, form, header.warnings);
   return header;
 }
 

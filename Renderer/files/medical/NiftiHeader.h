@@ -4,6 +4,7 @@
 
 #include "base/Error.h"
 #include "files/medical/SampleSource.h"
+#include "files/medical/VolumeChoice.h"
 #include "model/volume/Grid.h"
 
 #include <array>
@@ -27,13 +28,14 @@ struct NiftiHeader {
   std::vector<Message> warnings = {};
 };
 
-/// Parses a header. The sform gives the geometry if its code is positive, as in FSL, SPM and
-/// nibabel; else the qform, which ITK and Slicer prefer. A warning tells if both are given and
-/// disagree by more than half a voxel at a corner. Without either, voxels lie along LPS axes from
-/// the origin. An sform whose unit axes are within 1e-3 of orthogonal is orthogonalized; with
-/// larger shears the qform is used, with a warning, or without one, the file is rejected. Throws
-/// Error (input), naming `path`, for other headers, numbers that are not finite or exceed 1e9, and
-/// samples that are not real scalars.
-NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::path& path);
+/// Parses a header. `form` gives the geometry; without it the sform if its code is positive, as in
+/// FSL, SPM and nibabel; else the qform, which ITK and Slicer prefer. A warning tells if both are
+/// given and disagree by more than half a voxel at a corner. Without either, voxels lie along LPS
+/// axes from the origin. An sform whose unit axes are within 1e-3 of orthogonal is orthogonalized;
+/// with larger shears the qform is used, with a warning, or without one, the file is rejected.
+/// Throws Error (input), naming `path`, for other headers, a missing `form`, numbers that are not
+/// finite or exceed 1e9, and samples that are not real scalars.
+NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::path& path,
+                             std::optional<NiftiForm> form = {});
 
 } // namespace fenestra

@@ -58,11 +58,11 @@ private:
 
 } // namespace
 
-NiftiHeader readNiftiHeader(const std::filesystem::path& path) {
+NiftiHeader readNiftiHeader(const std::filesystem::path& path, std::optional<NiftiForm> form) {
   NiftiStream stream(path);
   NiftiBytes bytes;
   stream.read(bytes.data(), bytes.size());
-  return parseNiftiHeader(bytes, path);
+  return parseNiftiHeader(bytes, path, form);
 }
 
 std::string readNiftiExtensions(const std::filesystem::path& path, const NiftiHeader& header) {

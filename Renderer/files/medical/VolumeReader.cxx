@@ -25,16 +25,15 @@ Volume makeVolume(const std::string& name, const Grid& grid, VoxelStore&& sample
   return volume;
 }
 
-Volume readVolume(const std::filesystem::path& path) {
+Volume readVolume(const std::filesystem::path& path, const VolumeChoice& choice) {
   Volume volume;
-  readMedicalImage(path, Components::one,
-                   [&](const MedicalImage& image, const SampleSource& source) {
-                     VoxelStore samples(source.count);
-                     readSamples(source, samples);
-                     volume = makeVolume(path.string(), image.grid, std::move(samples));
-                     volume.warnings.insert(volume.warnings.begin(), image.warnings.begin(),
-                                            image.warnings.end());
-                   });
+  const auto consume = [&](const MedicalImage& image, const SampleSource& source) {
+    VoxelStore samples(source.count);
+    readSamples(source, samples);
+    volume = makeVolume(path.string(), image.grid, std::move(samples));
+    volume.warnings.insert(volume.warnings.begin(), image.warnings.begin(), image.warnings.end());
+  };
+  readMedicalImage(path, Components::one, consume, choice);
   return volume;
 }
 

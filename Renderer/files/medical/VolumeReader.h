@@ -2,6 +2,7 @@
 // Reads scalar volumes.
 
 #include "files/medical/SampleStore.h"
+#include "files/medical/VolumeChoice.h"
 #include "model/volume/Volume.h"
 
 #include <filesystem>
@@ -11,7 +12,7 @@ namespace fenestra {
 /// Reads NRRD (.nrrd .nhdr), NIfTI (.nii .nii.gz) or MetaImage (.mha .mhd) with any scalar type and
 /// geometry. Throws Error (input) for several components or frames, missing, damaged or truncated
 /// files, singular geometry, a volume without a finite voxel, and other formats.
-Volume readVolume(const std::filesystem::path& path);
+Volume readVolume(const std::filesystem::path& path, const VolumeChoice& choice = {});
 
 /// Store that chooses among Volume.h's voxel types.
 using VoxelStore = SampleStore<std::uint8_t, std::int16_t, std::uint16_t, float>;

@@ -128,12 +128,12 @@ std::vector<std::string> listStorageFiles(const MrmlScene& scene, const MrmlNode
   return names;
 }
 
-Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
+Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node, const VolumeChoice& choice) {
   const Affine nodeToWorld = toWorld(scene, node);
   Volume volume = scene.files.read(requireDataFiles(scene, node), [&](const Paths& files) {
     // A volume file (with samples possibly in further files), else DICOM slices.
-    return findMedicalFormat(files.front()) ? readVolume(files.front())
-                                            : readDicomVolume(files, node.name);
+    return findMedicalFormat(files.front()) ? readVolume(files.front(), choice)
+                                            : readDicomVolume(files, node.name, choice);
   });
   for (Message& warning : volume.warnings)
     warning = scene.files.translatePaths(warning);

@@ -3,6 +3,7 @@
 // the references of its node. It throws Error (input), stating the node, for a reference or value
 // that cannot be used.
 
+#include "files/medical/VolumeChoice.h"
 #include "files/segments/SegmentationReader.h"
 #include "files/slicer/MrmlDocument.h"
 #include "files/slicer/SceneFiles.h"
@@ -58,7 +59,8 @@ Affine toWorld(MrmlScene& scene, const MrmlNode& node);
 
 /// Reads a scalar volume into world space. The file gives the geometry, not the scene's copy of it;
 /// centerImage and UseOrientationFromFile of the storage node modify it.
-Volume readSceneVolume(MrmlScene& scene, const MrmlNode& volume);
+/// `choice`: of its file; the name is ignored.
+Volume readSceneVolume(MrmlScene& scene, const MrmlNode& volume, const VolumeChoice& choice = {});
 
 /// Reads a segmentation or label map into world space. Closed surfaces become labels on the grid
 /// `volume`, which is in world space, too.

@@ -36,6 +36,7 @@ struct Volume {
   std::vector<Message> warnings;
   std::optional<Modality> modality = {}; ///< stated by the file; empty: not stated, or another one
   bool hasContrastAgent = false;         ///< the file states a contrast agent
+  std::size_t frameCount = 1;            ///< of the input; the volume is one of them
 };
 
 /// Computes minimum and maximum from the voxels.
