@@ -1,6 +1,7 @@
 // Components of segments and their materials, as a tint and as a mixture; refused requests.
 
 #include "model/medium/Reflectance.h"
+#include "scene/Contrast.h"
 #include "scene/SegmentTint.h"
 
 #include "Refusals.h"

@@ -191,12 +191,10 @@ void expectRefusal(const std::filesystem::path& path, const std::string& text) {
   expectRefused(path, text, [&path] { readVolume(path); });
 }
 
-TEST(VolumeReader, RefusesFramesVectorsAndImages) {
+TEST(VolumeReader, RefusesVectorsAndImages) {
   const TemporaryFolder folder;
   const std::vector<std::uint8_t> samples(96, 1);
   for (const std::string end : {".nrrd", ".nii.gz", ".mha"}) {
-    writeFile(folder / ("frames" + end), samples, {.size = {3, 4, 2, 4}});
-    expectRefusal(folder / ("frames" + end), "unsupported-file | 4th");
     writeFile(folder / ("vectors" + end), samples, {.components = 3});
     expectRefusal(folder / ("vectors" + end), "unsupported-file | 3");
   }

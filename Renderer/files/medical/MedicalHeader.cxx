@@ -102,8 +102,11 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
   const bool isSimple = stored.files.size() == 1 && !skips;
   stored.isRaw = isSimple && encoding == "raw";
   stored.isStream = isSimple && isGzip(encoding);
-  const std::string kind = toLower(fields["kinds"]);
-  stored.isListFirst = kind.starts_with("list") || kind.starts_with("vector");
+  const std::vector<std::string> kinds = splitWords(toLower(fields["kinds"]));
+  const auto isList = [](const std::string& kind) { return isOneOf(kind, {"list", "vector"}); };
+  stored.isListFirst = !kinds.empty() && isList(kinds.front());
+  stored.isListLast = !kinds.empty() && isList(kinds.back());
+  stored.hasList = std::ranges::find(kinds, "list") != kinds.end();
   if (const std::string order = toLower(fields["endian"]); order == "little" || order == "big")
     stored.order = order == "big" ? std::endian::big : std::endian::little;
   return stored;

@@ -33,6 +33,8 @@ struct StoredSamples {
   bool isRaw = false, isStream = false;
   std::optional<std::endian> order = {}; ///< byte order; nullopt: not stated
   bool isListFirst = false;              ///< the fastest axis of a NRRD is the list of components
+  bool isListLast = false;               ///< its slowest axis is
+  bool hasList = false;                  ///< it is a list, not a vector or color
   bool hasSpacing = true;                ///< the header states the voxel spacing
 };
 

@@ -1,6 +1,7 @@
 #include "files/medical/MedicalImage.h"
 
 #include "base/Error.h"
+#include "files/medical/FrameSource.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/medical/NiftiSamples.h"
 #include "files/medical/SampleStream.h"
@@ -26,13 +27,19 @@ itk::ImageIOBase::Pointer makeImageIo(MedicalFormat format) {
   return itk::MetaImageIO::New().GetPointer();
 }
 
-void checkPixels(const std::filesystem::path& path, const itk::ImageIOBase& io,
-                 Components allowed) {
+/// `hasList`: the components are a list of frames, and one of them may be read.
+void checkPixels(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed,
+                 bool hasList) {
   using Pixel = itk::IOPixelEnum;
   const Pixel type = io.GetPixelType();
-  const bool isScalar = io.GetNumberOfComponents() == 1 && type != Pixel::COMPLEX;
-  const bool isList = allowed == Components::any && type == Pixel::VECTOR;
-  if (!isScalar && !isList)
+  if (type == Pixel::COMPLEX)
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "has complex numbers; save their magnitude as a volume");
+  if (type == Pixel::RGB || type == Pixel::RGBA)
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "is a color image; convert it to one scalar per voxel");
+  const bool isList = type == Pixel::VECTOR && (allowed == Components::any || hasList);
+  if (io.GetNumberOfComponents() != 1 && !isList)
     throw inputError(ErrorCode::unsupportedFile, path, "has ", io.GetNumberOfComponents(),
                      " components per voxel (", itk::ImageIOBase::GetPixelTypeAsString(type),
                      "); convert it to one scalar per voxel");
@@ -48,7 +55,7 @@ Size3 readSize(const std::filesystem::path& path, const itk::ImageIOBase& io, Co
   if (axes < 3)
     throw inputError(ErrorCode::unsupportedFile, path, "is an image of ", axes,
                      " axes, not a volume; give one with three");
-  const bool allowsFrames = allowed == Components::any && io.GetNumberOfComponents() == 1;
+  const bool allowsFrames = allowed != Components::one && io.GetNumberOfComponents() == 1;
   for (unsigned axis = allowsFrames ? 4 : 3; axis < axes; ++axis)
     if (io.GetDimensions(axis) != 1)
       throw inputError(ErrorCode::unsupportedFile, path, "has ", axes, " axes, the ", axis + 1,
@@ -129,22 +136,26 @@ std::function<void(void*, std::size_t)> readThroughItk(itk::ImageIOBase& io, std
   };
 }
 
-/// Source of the file's samples. Throws Error (input) if it declares more than it can hold.
+/// Source of the file's samples, or of one of its `frames`. Throws Error (input) if it declares
+/// more than it can hold.
 SampleSource makeSampleSource(const std::filesystem::path& path, const StoredSamples& stored,
-                              itk::ImageIOBase& io) {
+                              itk::ImageIOBase& io, FrameChoice frames) {
   SampleSource source{.type = findSampleType(path, io), .count = countSamples(io)};
   const std::size_t sampleBytes = bytesPerSample(source.type);
   const std::uint64_t declared = checkDeclaredBytes(path, stored, source.count, sampleBytes);
-  // ITK interleaves the components of a voxel if they are stored apart.
-  const bool isInterleaved = io.GetNumberOfComponents() == 1 || stored.isListFirst;
+  const bool isList = io.GetNumberOfComponents() > 1;
+  const bool isInUsedOrder =
+      !isList || stored.isListFirst || (frames.count > 1 && stored.isListLast);
   const bool isOrderKnown = sampleBytes == 1 || stored.order;
-  if (!((stored.isRaw || stored.isStream) && isInterleaved && isOrderKnown)) {
+  if (!((stored.isRaw || stored.isStream) && isInUsedOrder && isOrderKnown)) {
     source.read = readThroughItk(io, declared);
-    return source;
+    frames.isInterleaved = isList; // by ITK, however they are stored
+    return pickFrame(std::move(source), frames);
   }
   source.isSwapped = sampleBytes > 1 && *stored.order != std::endian::native;
   openStream(path, stored, declared, source);
-  return source;
+  frames.isInterleaved = isList && stored.isListFirst;
+  return pickFrame(std::move(source), frames);
 }
 
 std::map<std::string, std::string> readTextFields(const itk::ImageIOBase& io) {
@@ -159,14 +170,15 @@ std::map<std::string, std::string> readTextFields(const itk::ImageIOBase& io) {
 }
 
 /// Reads a single volume; only NRRD can hold a list of components.
-void readNifti(const std::filesystem::path& path, const SampleConsumer& consume,
+void readNifti(const std::filesystem::path& path, Components allowed, const SampleConsumer& consume,
                const VolumeChoice& choice) {
   const NiftiHeader header = readNiftiHeader(path, choice.niftiForm);
   const std::size_t axes = header.size.size();
   if (axes < 3)
     throw inputError(ErrorCode::unsupportedFile, path, "is an image of ", axes,
                      " axes, not a volume; give one with three");
-  for (std::size_t axis = 3; axis < axes; ++axis)
+  const bool hasFrames = allowed == Components::oneFrame && axes > 3;
+  for (std::size_t axis = hasFrames ? 4 : 3; axis < axes; ++axis)
     if (header.size[axis] != 1) { // the fifth axis holds vector components (nifti1.h)
       const char* const problem = axis == 4 ? " components per voxel; convert it to one scalar"
                                             : " frames; extract one of them";
@@ -177,16 +189,19 @@ void readNifti(const std::filesystem::path& path, const SampleConsumer& consume,
   const Mat3& axesToRas = header.indexToRas.linear();
   checkGeometry(path, axesToRas, axesToRas.columnNorms(), header.indexToRas.translation());
   MedicalImage image{.grid = {size, header.indexToRas}, .warnings = header.warnings};
-  chooseFrame(path.string(), choice.frame, 1, image.warnings);
   image.extensions = readNiftiExtensions(path, header);
-  consume(image, openNiftiSamples(path, header, static_cast<std::size_t>(size.prod())));
+  image.frameCount = hasFrames ? static_cast<std::size_t>(header.size[3]) : 1;
+  const FrameChoice frames{
+      image.frameCount, chooseFrame(path.string(), choice.frame, image.frameCount, image.warnings)};
+  const std::size_t samples = static_cast<std::size_t>(size.prod()) * image.frameCount;
+  consume(image, pickFrame(openNiftiSamples(path, header, samples), frames));
 }
 
 void readChecked(const std::filesystem::path& path, MedicalFormat format, Components allowed,
                  const SampleConsumer& consume, const VolumeChoice& choice) {
   const StoredSamples stored = locateSamples(path, format); // rejects what would crash ITK
   if (format == MedicalFormat::nifti)
-    return readNifti(path, consume, choice);
+    return readNifti(path, allowed, consume, choice);
   if (choice.niftiForm)
     throw inputError(ErrorCode::unknownForm, path, "is no NIfTI file, so it has no qform or sform");
   const SuppressItkOutput suppress;
@@ -194,9 +209,9 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
   io->SetFileName(path.string());
   io->ReadImageInformation();
   // Only NRRD can hold a list of segmentation layers.
-  if (format != MedicalFormat::nrrd)
+  if (allowed == Components::any && format != MedicalFormat::nrrd)
     allowed = Components::one;
-  checkPixels(path, *io, allowed);
+  checkPixels(path, *io, allowed, allowed == Components::oneFrame && stored.hasList);
   MedicalImage image{.grid = readGrid(path, *io, allowed),
                      .components = io->GetNumberOfComponents(),
                      .hasFrames = countFrames(*io) > 1,
@@ -204,10 +219,15 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
   if (!stored.hasSpacing)
     image.warnings.push_back(
         makeMessage(ErrorCode::assumedGeometry, path, "has no spacing; 1 mm voxels are assumed"));
-  chooseFrame(path.string(), choice.frame, 1, image.warnings);
   if (image.hasFrames)
     image.components = countFrames(*io);
-  consume(image, makeSampleSource(path, stored, *io));
+  if (allowed == Components::oneFrame) {
+    image.frameCount = std::exchange(image.components, 1);
+    image.hasFrames = false;
+  }
+  const FrameChoice frames{
+      image.frameCount, chooseFrame(path.string(), choice.frame, image.frameCount, image.warnings)};
+  consume(image, makeSampleSource(path, stored, *io, frames));
 }
 
 /// Throws Error (input) for what often lies under the name of an image: it is said what it is.

@@ -67,6 +67,12 @@ SampleType readNiftiType(const NiftiFields& fields) {
       {512, std::uint16_t()}, {768, std::uint32_t()}, {1024, std::int64_t()},
       {1280, std::uint64_t()}};
   const auto code = fields.number<std::int16_t>(70);
+  if (code == 128 || code == 2304) // RGB24, RGBA32
+    throw inputError(ErrorCode::unsupportedFile, fields.path(),
+                     "is a color image; convert it to one scalar per voxel");
+  if (code == 32 || code == 1792 || code == 2048) // of floats of 32, 64 and 128 bits
+    throw inputError(ErrorCode::unsupportedFile, fields.path(),
+                     "has complex numbers; save their magnitude as a volume");
   const auto type = types.find(code);
   if (type == types.end())
     throw fieldError(fields.path(), "datatype", code,

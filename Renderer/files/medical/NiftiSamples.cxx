@@ -43,6 +43,11 @@ public:
       throw makeDamagedError(m_path);
   }
 
+  void skip(std::uint64_t bytes) {
+    if (gzseek(m_file.get(), static_cast<z_off_t>(bytes), SEEK_CUR) < 0)
+      throw makeDamagedError(m_path);
+  }
+
   /// Reads beyond the samples, so that zlib verifies the checksum if the stream ends within 1024
   /// bytes.
   void checkEnd() {
@@ -89,6 +94,7 @@ SampleSource openNiftiSamples(const std::filesystem::path& path, const NiftiHead
       .isSwapped = header.isSwapped,
       .rescaling = header.rescaling,
       .read = [stream](void* to, std::size_t bytes) { stream->read(to, bytes); },
+      .skip = [stream](std::uint64_t bytes) { stream->skip(bytes); },
       .finish = [stream] { stream->checkEnd(); },
   };
 }

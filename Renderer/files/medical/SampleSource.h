@@ -36,6 +36,8 @@ struct SampleSource {
   std::optional<Rescaling> rescaling = {};
   /// Fills memory with the next bytes of the file, fewer than 2^30. Throws if the file ends early.
   std::function<void(void*, std::size_t)> read = {};
+  /// Skips bytes of the file, faster than reading them. May be empty.
+  std::function<void(std::uint64_t)> skip = {};
   /// Called after the last sample; throws if the file is damaged. May be empty.
   std::function<void()> finish = {};
 };

@@ -82,6 +82,9 @@ void openStream(const std::filesystem::path& path, const StoredSamples& stored,
       throw inputError(ErrorCode::unreadableFile, path,
                        "cannot be read to the end of its samples; copy it again");
   };
+  source.skip = [samples](std::uint64_t bytes) {
+    samples->seekg(static_cast<std::streamoff>(bytes), std::ios::cur);
+  };
 }
 
 } // namespace fenestra

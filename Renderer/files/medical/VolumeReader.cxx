@@ -31,9 +31,10 @@ Volume readVolume(const std::filesystem::path& path, const VolumeChoice& choice)
     VoxelStore samples(source.count);
     readSamples(source, samples);
     volume = makeVolume(path.string(), image.grid, std::move(samples));
+    volume.frameCount = image.frameCount;
     volume.warnings.insert(volume.warnings.begin(), image.warnings.begin(), image.warnings.end());
   };
-  readMedicalImage(path, Components::one, consume, choice);
+  readMedicalImage(path, Components::oneFrame, consume, choice);
   return volume;
 }
 

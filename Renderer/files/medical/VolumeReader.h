@@ -10,7 +10,8 @@
 namespace fenestra {
 
 /// Reads NRRD (.nrrd .nhdr), NIfTI (.nii .nii.gz) or MetaImage (.mha .mhd) with any scalar type and
-/// geometry. Throws Error (input) for several components or frames, missing, damaged or truncated
+/// geometry. Of several frames (a fourth axis, or a NRRD
+/// list), one is read. Throws Error (input) for several components, missing, damaged or truncated
 /// files, singular geometry, a volume without a finite voxel, and other formats.
 Volume readVolume(const std::filesystem::path& path, const VolumeChoice& choice = {});
 
