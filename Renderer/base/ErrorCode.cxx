@@ -27,6 +27,7 @@ constexpr auto words = [] {
       {unwritableFile, "unwritable-file"},
       {ambiguousSegmentation, "ambiguous-segmentation"},
       {ambiguousVolume, "ambiguous-volume"},
+      {assumedForm, "assumed-form"},
       {assumedFrame, "assumed-frame"},
       {assumedGeometry, "assumed-geometry"},
       {ignoredRequest, "ignored-request"},

@@ -27,6 +27,7 @@ enum class ErrorCode : std::uint8_t {
   // Volumes and scenes
   ambiguousSegmentation, ///< the scene has several
   ambiguousVolume,       ///< the scene or folder has several
+  assumedForm,           ///< warning: a NIfTI header has two that disagree
   assumedFrame,          ///< warning: the first of several
   assumedGeometry,       ///< warning: the file states no or contradictory positions
   ignoredRequest,        ///< warning: a stored part of the request is not used

@@ -18,6 +18,7 @@ constexpr auto adviceTable = [] {
        "choose one with --segmentation, by name or id, or a --focus that only one has"},
       {ambiguousVolume, "choose one with --volume, by name, id or number"},
       {angleOfOrthographicCamera, "use --scale, or add --projection perspective"},
+      {assumedForm, "--nifti-form chooses the other for a volume"},
       {assumedFrame, "--frame N chooses another"},
       {conflictingLabels, "remove --labels"},
       {emptyImagePlane, "use a larger --scale, --angle or --size"},

@@ -2,6 +2,7 @@
 
 #include "base/Error.h"
 #include "files/medical/DicomSeries.h"
+#include "files/medical/NiftiForms.h"
 #include "files/medical/VolumeReader.h"
 #include "files/segments/MaskFolder.h"
 #include "files/slicer/FocusNodes.h"
@@ -115,6 +116,21 @@ MrmlScene* Input::scene() const {
   if (!m_state->isScene)
     return nullptr;
   return m_state->withScene([](MrmlScene& scene) { return &scene; });
+}
+
+VolumeChoice Input::chooseForm(const VolumeChoice& given,
+                               const std::optional<std::string>& segmentation) const {
+  VolumeChoice choice = given;
+  if (m_state->isScene || isFolder(path()) || !segmentation)
+    return choice;
+  const auto readGrids = [&] {
+    if (!isFolder(*segmentation))
+      return readPossibleGrids(*segmentation);
+    const auto masks = listMaskFiles(*segmentation);
+    return masks.empty() ? std::vector<Grid>() : readPossibleGrids(masks.front());
+  };
+  chooseNiftiForm(path(), readGrids, *segmentation, choice);
+  return choice;
 }
 
 VolumeInput Input::volume(const VolumeChoice& choice) const {

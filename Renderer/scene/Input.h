@@ -82,6 +82,9 @@ public:
   MrmlScene* scene() const;
 
   VolumeInput volume(const VolumeChoice& choice) const;
+  /// Adds the form of a NIfTI volume that agrees with the segmentation file (NiftiForms.h).
+  VolumeChoice chooseForm(const VolumeChoice& given,
+                          const std::optional<std::string>& segmentation) const;
   /// `followsCamera`: also reads the scene's camera.
   SceneSettings settings(const std::optional<std::string>& volume, bool followsCamera) const;
   /// Transfer function of the volume's rendering in Slicer. `range`: of the voxels; needed for

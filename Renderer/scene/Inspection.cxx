@@ -66,7 +66,9 @@ FileVolume inspectVolume(const RenderRequest& request, const Input& input, Json&
     result.failure = error;
     report["refused"] = error.message();
     Json unused;
-    if (const auto read = tryRead([&] { return input.volume(request.volume); }, unused))
+    if (const auto read = tryRead(
+            [&] { return input.volume(input.chooseForm(request.volume, request.segmentation)); },
+            unused))
       add(read->volume, read->volume.warnings);
   }
   return result;

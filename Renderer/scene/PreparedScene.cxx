@@ -48,7 +48,7 @@ void PreparedScene::prepare() {
       m_namedLights.get(r.lightsName(), r.environment, r.environmentMap); // fails early
   if (r.transfer)
     m_namedTransfer.get(*r.transfer, m_input);
-  const auto raw = m_volume.get(m_input, r.volume);
+  const auto raw = m_volume.get(m_input, *m_volumeChoice.get(m_input, r.volume, r.segmentation));
   const auto settings = m_settings.get(m_input, r.volume.name, r.view.isSceneCamera());
   if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
     m_segments.get(m_input, chooseSegmentation(), raw->volume.grid);
@@ -185,10 +185,10 @@ void PreparedScene::makeTint(const std::string& name) {
 
 StageSeconds PreparedScene::seconds() const {
   const ClipResult unused, &clip = m_clip.isUpdated() ? *m_clip : unused; // unused: 0 seconds
-  return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
-                  m_segments.seconds() + m_trimmed.seconds() + m_focus.seconds() +
-                  m_sceneTransfer.seconds() + m_hasVoxels.seconds() + m_content.seconds() +
-                  m_transfer.seconds(),
+  return {.load = m_namedTransfer.seconds() + m_volumeChoice.seconds() + m_volume.seconds() +
+                  m_settings.seconds() + m_segments.seconds() + m_trimmed.seconds() +
+                  m_focus.seconds() + m_sceneTransfer.seconds() + m_hasVoxels.seconds() +
+                  m_content.seconds() + m_transfer.seconds(),
           .smoothing = m_smoothed.seconds() + m_islands.seconds(),
           .materials = m_materials.seconds() + m_transparent.seconds() + m_separated.seconds() +
                        m_plan.seconds() + m_skin.seconds() + m_labelWeights.seconds() +

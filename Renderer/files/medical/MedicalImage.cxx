@@ -172,7 +172,7 @@ std::map<std::string, std::string> readTextFields(const itk::ImageIOBase& io) {
 /// Reads a single volume; only NRRD can hold a list of components.
 void readNifti(const std::filesystem::path& path, Components allowed, const SampleConsumer& consume,
                const VolumeChoice& choice) {
-  const NiftiHeader header = readNiftiHeader(path, choice.niftiForm);
+  const NiftiHeader header = readNiftiHeader(path, choice);
   const std::size_t axes = header.size.size();
   if (axes < 3)
     throw inputError(ErrorCode::unsupportedFile, path, "is an image of ", axes,

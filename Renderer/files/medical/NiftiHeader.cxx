@@ -131,17 +131,16 @@ Affine readSform(const NiftiFields& fields, const Vec3& pixdim) {
   const double shear = measureShear(linear);
   if (shear == infinity)
     throw fieldError(fields.path(), "srow", "the axes are linearly dependent; fix the header");
-  if (!(shear < mostShear))
-    throw fieldError(fields.path(), "srow", "is sheared by ", toString(shear, 2),
-                     " of an axis; resample the image onto orthogonal axes");
+  const Vec3 offset(fields.real(292), fields.real(308), fields.real(324));
+  if (!(shear < mostShear)) // as of a tilted gantry
+    return Affine(linear, offset);
   const Mat3 nearest = findNearestOrthogonal(linear.normalizedColumns());
   // If pixdim agrees, it states the spacing without the rounding of the rows.
   Vec3 spacing = linear.columnNorms();
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(spacing[axis] - pixdim[axis]) < 1e-5 * pixdim[axis])
       spacing[axis] = pixdim[axis];
-  return Affine(nearest * Mat3::Diagonal(spacing),
-                {fields.real(292), fields.real(308), fields.real(324)});
+  return Affine(nearest * Mat3::Diagonal(spacing), offset);
 }
 
 Affine readQform(const NiftiFields& fields, const Vec3& pixdim) {
@@ -184,22 +183,32 @@ double measureDisagreement(const NiftiFields& fields, const Affine& qform) {
   return most;
 }
 
-/// The form that places the image if both are given: the sform, unless it is sheared. Warns if they
-/// disagree by more than half a voxel.
-Affine chooseForm(const NiftiFields& fields, const Vec3& pixdim, std::vector<Message>& warnings) {
+/// The form that places the image if both are given: the chosen one, else the sform, if its axes
+/// are not linearly dependent. A guess is reported if the forms disagree by more than half a voxel.
+Affine chooseForm(const NiftiFields& fields, const Vec3& pixdim, const VolumeChoice& choice,
+                  NiftiHeader& header) {
   const Affine qform = readQform(fields, pixdim);
-  const bool isSheared = !(measureShear(readSformAxes(fields)) < mostShear);
-  if (const double apart = measureDisagreement(fields, qform); apart > 0.5 * pixdim.minCoeff())
-    warnings.push_back(makeMessage(
-        ErrorCode::assumedGeometry, fields.path(), "qform and sform place its corners up to ",
+  const bool isFlat = measureShear(readSformAxes(fields)) == infinity;
+  const NiftiForm form = choice.niftiForm.value_or(isFlat ? NiftiForm::qform : NiftiForm::sform);
+  const double apart = measureDisagreement(fields, qform);
+  const bool isGuess = !choice.niftiForm || !choice.formReason.empty();
+  if (isGuess && apart > 0.5 * pixdim.minCoeff()) {
+    const std::string reason = !choice.formReason.empty()
+                                   ? "since only it agrees with " + choice.formReason
+                               : isFlat ? "since the axes of the sform are linearly dependent"
+                                        : "as in FSL, SPM and nibabel (3D Slicer uses the qform)";
+    header.warnings.push_back(makeMessage(
+        ErrorCode::assumedForm, fields.path(), "qform and sform place its corners up to ",
         toString(apart * readUnitMm(fields), 3), " mm apart; the ",
-        isSheared ? "qform is used, since the sform is sheared: the image may be distorted"
-                  : "sform is used, as in FSL, SPM and nibabel (3D Slicer uses the qform)"));
-  return isSheared ? qform : readSform(fields, pixdim);
+        form == NiftiForm::qform ? "qform" : "sform", " is used, ", reason));
+    if (!isFlat)
+      header.qformToRas = qform;
+  }
+  return form == NiftiForm::qform ? qform : readSform(fields, pixdim);
 }
 
-Affine readNiftiGeometry(const NiftiFields& fields, std::optional<NiftiForm> form,
-                         std::vector<Message>& warnings) {
+/// Sets the geometry of the header.
+void readNiftiGeometry(const NiftiFields& fields, const VolumeChoice& choice, NiftiHeader& header) {
   const auto qform = fields.number<std::int16_t>(252), sform = fields.number<std::int16_t>(254);
   // pixdim, quaternion and offset, rows of the sform
   if (!fields.hasFiniteNumbers(76, 4) || (qform > 0 && !fields.hasFiniteNumbers(256, 6)) ||
@@ -210,28 +219,34 @@ Affine readNiftiGeometry(const NiftiFields& fields, std::optional<NiftiForm> for
   Vec3 pixdim = fields.triple(80);
   for (int axis = 0; axis < 3; ++axis)
     pixdim[axis] = pixdim[axis] == 0.0 ? 1.0 : std::abs(pixdim[axis]);
-  Affine map(lpsToRas * Mat3::Diagonal(pixdim));
+  const auto form = choice.niftiForm;
   if (form && (form == NiftiForm::qform ? qform : sform) <= 0)
     throw inputError(ErrorCode::unknownForm, fields.path(), "has no ",
                      form == NiftiForm::qform ? "qform" : "sform");
-  if (!form && qform > 0 && sform > 0)
-    map = chooseForm(fields, pixdim, warnings);
-  else if (sform > 0 && form != NiftiForm::qform)
+  Affine map(lpsToRas * Mat3::Diagonal(pixdim));
+  if (qform > 0 && sform > 0)
+    map = chooseForm(fields, pixdim, choice, header);
+  else if (sform > 0)
     map = readSform(fields, pixdim);
   else if (qform > 0)
     map = readQform(fields, pixdim);
   else
-    warnings.push_back(
+    header.warnings.push_back(
         makeMessage(ErrorCode::assumedGeometry, fields.path(),
                     "has no qform or sform; voxels are placed along LPS axes from the origin"));
   const double unit = readUnitMm(fields);
-  return Affine(map.linear() * Mat3::Diagonal(Vec3::Constant(unit)), unit * map.translation());
+  const auto toMm = [unit](const Affine& form) {
+    return Affine(form.linear() * Mat3::Diagonal(Vec3::Constant(unit)), unit * form.translation());
+  };
+  header.indexToRas = toMm(map);
+  if (header.qformToRas)
+    header.qformToRas = toMm(*header.qformToRas);
 }
 
 } // namespace
 
 NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::path& path,
-                             std::optional<NiftiForm> form) {
+                             const VolumeChoice& choice) {
   const NiftiFields fields(bytes, path);
   NiftiHeader header;
   header.size = readNiftiSize(fields);
@@ -248,7 +263,7 @@ NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::pat
   header.rescaling = readNiftiRescaling(fields);
   // Samples follow the header and the four bytes that flag extensions.
   header.offset = static_cast<std::int64_t>(std::max(offset, 352.0));
-  header.indexToRas = readNiftiGeometry(fields, form, header.warnings);
+  readNiftiGeometry(fields, choice, header);
   return header;
 }
 

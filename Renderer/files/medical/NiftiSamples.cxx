@@ -63,11 +63,11 @@ private:
 
 } // namespace
 
-NiftiHeader readNiftiHeader(const std::filesystem::path& path, std::optional<NiftiForm> form) {
+NiftiHeader readNiftiHeader(const std::filesystem::path& path, const VolumeChoice& choice) {
   NiftiStream stream(path);
   NiftiBytes bytes;
   stream.read(bytes.data(), bytes.size());
-  return parseNiftiHeader(bytes, path, form);
+  return parseNiftiHeader(bytes, path, choice);
 }
 
 std::string readNiftiExtensions(const std::filesystem::path& path, const NiftiHeader& header) {

@@ -11,7 +11,7 @@
 namespace fenestra {
 
 /// Throws Error (input) as parseNiftiHeader does, and if the file is too short.
-NiftiHeader readNiftiHeader(const std::filesystem::path& path, std::optional<NiftiForm> form = {});
+NiftiHeader readNiftiHeader(const std::filesystem::path& path, const VolumeChoice& choice = {});
 
 /// Raw bytes of all header extensions, including their sizes and codes; at most 4 MiB. Throws Error
 /// (input) if the file is too short.

@@ -17,6 +17,7 @@ struct VolumeChoice {
   std::optional<std::string> name = {};    ///< node of a scene, or series of a DICOM folder
   std::optional<std::size_t> frame = {};   ///< time of a series or 4D file; empty: the first
   std::optional<NiftiForm> niftiForm = {}; ///< empty: by the rule of NiftiHeader.h
+  std::string formReason = {}; ///< whose grid only that form agrees with; empty: the user's choice
 
   bool operator==(const VolumeChoice&) const = default;
 };

@@ -3,6 +3,7 @@
 #include "base/Text.h"
 #include "files/medical/DicomReader.h"
 #include "files/medical/MedicalHeader.h"
+#include "files/medical/NiftiForms.h"
 #include "files/segments/LabelSearch.h"
 #include "files/segments/MaskRuns.h"
 #include "io/InputRegistry.h"
@@ -82,14 +83,15 @@ struct NamedMask {
 
 /// Reads the files in parallel. Warns once about each problem of the geometry, and about each file
 /// that is no mask.
-std::vector<NamedMask> readMasks(const fs::path& folder, std::vector<Message>& warnings) {
+std::vector<NamedMask> readMasks(const fs::path& folder, const Grid* reference,
+                                 std::vector<Message>& warnings) {
   const Paths files = requireMaskFiles(folder);
   const std::vector<SegmentInfo> segments = makeSegments(files);
   std::vector<std::optional<MaskRuns>> read(files.size());
   std::vector<Message> problems(files.size());
   tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
     try {
-      read[i] = readMask(files[i]);
+      read[i] = readMask(files[i], chooseFormByVolume(files[i], reference));
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::input || error.message().code == ErrorCode::outOfMemory)
         throw;
@@ -165,9 +167,9 @@ std::vector<SegmentInfo> readMaskFolderInfos(const fs::path& folder) {
   return makeSegments(requireMaskFiles(folder));
 }
 
-Segmentation readMaskFolder(const fs::path& folder) {
+Segmentation readMaskFolder(const fs::path& folder, const Grid* reference) {
   std::vector<Message> warnings;
-  std::vector<NamedMask> masks = readMasks(folder, warnings);
+  std::vector<NamedMask> masks = readMasks(folder, reference, warnings);
   std::optional<Segmentation> all;
   const auto add = [&](Segmentation part) {
     if (all)

@@ -14,8 +14,9 @@ std::vector<std::filesystem::path> listMaskFiles(const std::filesystem::path& fo
 /// Reads the masks of a folder (readMask) as segments, named by their files without extension; they
 /// may overlap and have different grids. Masks of equal grid that do not overlap form one label
 /// map; others are cropped. A file that is no mask is left out with a warning. Throws Error (input)
-/// if the folder has no mask.
-Segmentation readMaskFolder(const std::filesystem::path& folder);
+/// if the folder has no mask. `reference`:
+/// the volume's grid, which chooses between disagreeing NIfTI forms (NiftiForms.h); null: none.
+Segmentation readMaskFolder(const std::filesystem::path& folder, const Grid* reference = nullptr);
 
 /// Names the segments without reading the files, hence also those that are no masks.
 std::vector<SegmentInfo> readMaskFolderInfos(const std::filesystem::path& folder);

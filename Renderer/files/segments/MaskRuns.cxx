@@ -69,19 +69,19 @@ bool isProbability(const SampleStats& samples) {
          samples.maximum <= 1.0 + rounding;
 }
 
-MaskRuns readMask(const std::filesystem::path& path) {
+MaskRuns readMask(const std::filesystem::path& path, const VolumeChoice& choice) {
   MaskRuns mask;
-  readMedicalImage(
-      path, Components::one, [&](const MedicalImage& image, const SampleSource& source) {
-        RunStore store(image.grid.size.x());
-        readSamples(source, store);
-        auto runs = store.take();
-        if (!runs)
-          throw inputError(ErrorCode::unsupportedFile, path,
-                           "is no mask of one structure: it has several values; give a label map "
-                           "by itself as the segmentation");
-        mask = {image.grid, std::move(*runs), image.warnings};
-      });
+  const auto consume = [&](const MedicalImage& image, const SampleSource& source) {
+    RunStore store(image.grid.size.x());
+    readSamples(source, store);
+    auto runs = store.take();
+    if (!runs)
+      throw inputError(ErrorCode::unsupportedFile, path,
+                       "is no mask of one structure: it has several values; give a label map "
+                       "by itself as the segmentation");
+    mask = {image.grid, std::move(*runs), image.warnings};
+  };
+  readMedicalImage(path, Components::one, consume, choice);
   return mask;
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/Error.h"
 #include "files/medical/SampleStore.h"
+#include "files/medical/VolumeChoice.h"
 #include "files/segments/NativeGrid.h"
 #include "model/volume/Grid.h"
 
@@ -28,9 +29,9 @@ struct MaskRuns {
 bool isProbability(const SampleStats& samples);
 
 /// Reads a mask: an image in which all voxels other than 0 have one value, or a probability map
-/// with values from 0 to 1, of which the voxels of at least 1/2 are taken. Throws Error (input) for
-/// any other image.
-MaskRuns readMask(const std::filesystem::path& path);
+/// with values from 0 to 1, of which the voxels of at least 1/2 are taken. `choice`: of the NIfTI
+/// form. Throws Error (input) for any other image.
+MaskRuns readMask(const std::filesystem::path& path, const VolumeChoice& choice = {});
 
 /// Labels the mask with `value` in its bounding box, which is extended by one voxel where the grid
 /// continues; also returns the grid of the box. Without voxels it is the first voxel of the grid.

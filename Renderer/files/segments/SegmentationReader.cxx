@@ -4,6 +4,7 @@
 #include "files/formats/TextHeader.h"
 #include "files/medical/DicomReader.h"
 #include "files/medical/MedicalImage.h"
+#include "files/medical/NiftiForms.h"
 #include "files/medical/SampleStore.h"
 #include "files/segments/ClosedSurface.h"
 #include "files/segments/DicomSegments.h"
@@ -264,7 +265,7 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
   const std::string source = path.string();
   if (isFolder(path)) {
     rejectLabels(source, labelTable);
-    return readMaskFolder(path);
+    return readMaskFolder(path, reference);
   }
   if (lowercaseExtension(path) == ".vtm") {
     rejectLabels(source, labelTable);
@@ -277,16 +278,18 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
   MedicalImage image;
   Segmentation::Labels labels;
   bool isMap = true; // else a map of probabilities
-  readMedicalImage(path, Components::any, [&](const MedicalImage& read, const SampleSource& from) {
+  const VolumeChoice choice = chooseFormByVolume(path, reference);
+  const auto consume = [&](const MedicalImage& read, const SampleSource& from) {
     LabelStore samples(from.count);
     readSamples(from, samples);
     isMap = !isProbability(samples.stats()) || read.components > 1;
     if (isMap)
       labels = toLabels(std::move(samples), source);
     image = read;
-  });
+  };
+  readMedicalImage(path, Components::any, consume, choice);
   if (!isMap)
-    std::tie(image.grid, labels) = labelMask(readMask(path), 1);
+    std::tie(image.grid, labels) = labelMask(readMask(path, choice), 1);
   if (image.hasFrames)
     labels = interleaveLayers(std::move(labels), image.components);
   auto segments = readSegments(image.fields, source, image.components);
