@@ -407,9 +407,9 @@ const CommandSyntax& inspectSyntax() {
   static const CommandSyntax syntax = {
       "inspect",
       "Lists what an input contains, what a render would use, and what it would ignore and why.",
-      {{"INPUT",
-        "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), label map, "
-        "segmentation (.seg.nrrd), folder of masks or DICOM folder"}},
+      {{"INPUT", "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .hdr .mgz .mha "
+                 ".mhd), label map, "
+                 "segmentation (.seg.nrrd), folder of masks or DICOM folder"}},
       inspectTable,
       {},
       "List what an input contains and what a render would use",

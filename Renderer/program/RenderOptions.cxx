@@ -105,7 +105,8 @@ std::filesystem::path makeDefaultOutput(const std::filesystem::path& input) {
   if (std::error_code failed; path.filename() == "." || path.filename() == "..")
     path = std::filesystem::canonical(path, failed);
   std::string name = path.filename().string();
-  for (const char* ending : {".gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd", ".mrml", ".mrb"})
+  for (const char* ending : {".gz", ".nii", ".hdr", ".img", ".mgz", ".mgh", ".nrrd", ".nhdr",
+                             ".mha", ".mhd", ".mrml", ".mrb"})
     if (name.ends_with(ending))
       name.resize(name.size() - std::string_view(ending).size());
   if (name.empty())

@@ -64,12 +64,13 @@ std::string makeNrrd(const std::string& sizes, const std::string& kinds, bool is
          "\nspace origin: (0,0,0)\n\n" + (isCompressed ? compress(samples) : samples);
 }
 
-void expectEachFrame(const std::filesystem::path& path) {
+/// `assumptions`: other warnings than that of the frame.
+void expectEachFrame(const std::filesystem::path& path, std::size_t assumptions = 0) {
   for (std::size_t frame = 0; frame < frames; ++frame) {
     const Volume volume = readVolume(path, {.frame = frame});
     EXPECT_EQ(volume.grid.size, Size3(3, 4, 2)) << path;
     EXPECT_EQ(volume.frameCount, frames) << path;
-    EXPECT_TRUE(volume.warnings.empty()) << path;
+    EXPECT_EQ(volume.warnings.size(), assumptions) << path;
     std::visit(
         [&](const auto& all) {
           ASSERT_EQ(all.size(), voxels);
@@ -80,8 +81,8 @@ void expectEachFrame(const std::filesystem::path& path) {
   }
   const Volume first = readVolume(path);
   EXPECT_EQ(first.maximum, frameValue(0, voxels - 1)) << path;
-  ASSERT_EQ(first.warnings.size(), 1U) << path;
-  expectMessage(first.warnings[0], "assumed-frame | 5 frames");
+  ASSERT_EQ(first.warnings.size(), assumptions + 1) << path;
+  expectMessage(first.warnings.back(), "assumed-frame | 5 frames");
   expectRefused(path, "unknown-frame | 5", [&] { readVolume(path, {.frame = frames}); });
 }
 
@@ -97,7 +98,7 @@ TEST(Frames, FourthAxisHoldsFrames) {
                  .spacing = {1, 1, 1, 1},
                  .origin = {0, 0, 0, 0},
                  .compress = isCompressed});
-      expectEachFrame(folder / name);
+      expectEachFrame(folder / name, name == std::string("v.nrrd") ? 1 : 0); // no space
     }
 }
 

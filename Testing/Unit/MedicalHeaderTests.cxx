@@ -58,7 +58,7 @@ TEST_F(MedicalHeaders, MissingSpacingWarnsAndDefaultsToOneMillimeter) {
     EXPECT_EQ(volume.grid.spacing(), Vec3(1, 1, 1));
   }
   EXPECT_TRUE(readVolume(writeNrrd(space + unitDirections)).warnings.empty());
-  EXPECT_TRUE(readVolume(writeNrrd("spacings: 1 1 1\n")).warnings.empty());
+  EXPECT_EQ(readVolume(writeNrrd("spacings: 1 1 1\n")).warnings.size(), 1u) << "no space";
   const std::string size = "DimSize = 3 4 2\n";
   EXPECT_EQ(readVolume(writeMeta(size)).warnings.size(), 1u);
   EXPECT_TRUE(readVolume(writeMeta(size + "ElementSpacing = 1 1 1\n")).warnings.empty());

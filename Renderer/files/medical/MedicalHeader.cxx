@@ -3,10 +3,12 @@
 #include "base/Error.h"
 #include "files/formats/NrrdHeader.h"
 #include "files/formats/TextHeader.h"
+#include "files/medical/MghHeader.h"
 #include "io/InputRegistry.h"
 #include "io/MessageText.h"
 
 #include <algorithm>
+#include <cctype>
 #include <initializer_list>
 #include <map>
 #include <string_view>
@@ -90,6 +92,9 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
   checkNrrdSupport(path, fields);
   StoredSamples stored;
   stored.hasSpacing = hasNrrdSpacing(header);
+  const std::string space = toLower(fields["space"]);
+  stored.hasAxes = space.find("-superior") != std::string::npos || space.starts_with("scanner") ||
+                   isOneOf(space, {"ras", "las", "lps", "rast", "last", "lpst"});
   const std::string encoding = toLower(fields["encoding"]);
   stored.isCompressed = encoding != "raw" && encoding != "hex"; // one text digit can give 8 bytes
   locateNrrdFiles(path, header, stored);
@@ -209,14 +214,18 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
   return stored;
 }
 
-// ---- NIfTI
+// ---- NIfTI, Analyze and FreeSurfer
 
-StoredSamples locateNifti(const std::filesystem::path& path) {
+/// `headerBytes`: of the header that a file begins with, unless the header is another file.
+StoredSamples locateNifti(const std::filesystem::path& path, std::uint64_t headerBytes) {
+  const NiftiFiles files = findNiftiFiles(path);
+  requireFile(files.header, "give a file");
   StoredSamples stored;
-  stored.isCompressed = lowercaseExtension(path) == ".gz";
-  addFile(path, path.filename().string(), stored);
-  if (!stored.isCompressed)
-    setOffset(path, niftiHeaderBytes, stored);
+  const std::string extension = lowercaseExtension(path);
+  stored.isCompressed = extension == ".gz" || extension == ".mgz";
+  addFile(path, files.samples.filename().string(), stored);
+  if (!stored.isCompressed && files.header == files.samples)
+    setOffset(path, headerBytes, stored);
   return stored;
 }
 
@@ -226,17 +235,37 @@ std::optional<MedicalFormat> findMedicalFormat(const std::filesystem::path& path
   const std::string name = toLower(path.filename().string());
   if (name.ends_with(".nrrd") || name.ends_with(".nhdr"))
     return MedicalFormat::nrrd;
-  if (name.ends_with(".nii") || name.ends_with(".nii.gz"))
+  const std::string_view stem =
+      std::string_view(name).substr(0, name.size() - (name.ends_with(".gz") ? 3 : 0));
+  if (stem.ends_with(".nii") || stem.ends_with(".hdr") || stem.ends_with(".img"))
     return MedicalFormat::nifti;
+  if (name.ends_with(".mgz") || stem.ends_with(".mgh"))
+    return MedicalFormat::mgh;
   if (name.ends_with(".mha") || name.ends_with(".mhd"))
     return MedicalFormat::metaImage;
   return std::nullopt;
 }
 
+NiftiFiles findNiftiFiles(const std::filesystem::path& path) {
+  std::string name = path.filename().string();
+  const std::size_t end = name.size() - (toLower(name).ends_with(".gz") ? 3 : 0);
+  const std::string kind = end < 4 ? "" : toLower(name.substr(end - 4, 4));
+  if (kind != ".hdr" && kind != ".img")
+    return {path, path};
+  std::string other = kind == ".hdr" ? ".img" : ".hdr";
+  if (std::isupper(static_cast<unsigned char>(name[end - 1])))
+    std::ranges::transform(other, other.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  const std::filesystem::path pair = path.parent_path() / name.replace(end - 4, 4, other);
+  return kind == ".hdr" ? NiftiFiles{path, pair} : NiftiFiles{pair, path};
+}
+
 StoredSamples locateSamples(const std::filesystem::path& path, MedicalFormat format) {
   if (format == MedicalFormat::nrrd)
     return locateNrrd(path);
-  return format == MedicalFormat::metaImage ? locateMeta(path) : locateNifti(path);
+  if (format == MedicalFormat::metaImage)
+    return locateMeta(path);
+  return locateNifti(path, format == MedicalFormat::mgh ? mghHeaderBytes : nifti1Bytes);
 }
 
 std::uint64_t checkDeclaredBytes(const std::filesystem::path& path, const StoredSamples& stored,

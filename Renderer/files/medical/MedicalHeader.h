@@ -13,13 +13,17 @@
 
 namespace fenestra {
 
-enum class MedicalFormat { nrrd, nifti, metaImage };
+enum class MedicalFormat { nrrd, nifti, mgh, metaImage };
 
-inline constexpr std::uint64_t niftiHeaderBytes = 348;
-
-/// Format by file extension, case-insensitive: .nrrd .nhdr, .nii .nii.gz, .mha .mhd; nullopt:
-/// unknown.
+/// Format by file extension, case-insensitive: .nrrd .nhdr; .nii .nii.gz, or .hdr and .img, perhaps
+/// with .gz (NIfTI or Analyze); .mgz .mgh .mgh.gz; .mha .mhd; nullopt: unknown.
 std::optional<MedicalFormat> findMedicalFormat(const std::filesystem::path& path);
+
+/// Files of a NIfTI or Analyze image: twice the same, or .hdr and .img, whichever is named.
+struct NiftiFiles {
+  std::filesystem::path header, samples;
+};
+NiftiFiles findNiftiFiles(const std::filesystem::path& path);
 
 /// Location and encoding of stored samples.
 struct StoredSamples {
@@ -36,6 +40,7 @@ struct StoredSamples {
   bool isListLast = false;               ///< its slowest axis is
   bool hasList = false;                  ///< it is a list, not a vector or color
   bool hasSpacing = true;                ///< the header states the voxel spacing
+  bool hasAxes = true;                   ///< it states the anatomical directions of the axes
 };
 
 /// Throws Error (input) if the header does not match its format, names anything but plain files, or

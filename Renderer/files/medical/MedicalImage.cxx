@@ -169,10 +169,22 @@ std::map<std::string, std::string> readTextFields(const itk::ImageIOBase& io) {
   return fields;
 }
 
-/// Reads a single volume; only NRRD can hold a list of components.
-void readNifti(const std::filesystem::path& path, Components allowed, const SampleConsumer& consume,
+/// Number of samples of an image with these sizes. Throws Error (input) if no file can hold them.
+std::size_t multiplySizes(const std::filesystem::path& path,
+                          const std::vector<std::int64_t>& sizes) {
+  constexpr std::int64_t most = std::int64_t{1} << 48;
+  std::int64_t samples = 1;
+  for (const std::int64_t size : sizes)
+    if (__builtin_mul_overflow(samples, size, &samples) || samples > most)
+      throw inputError(ErrorCode::damagedFile, path,
+                       "declares more than 2^48 samples; copy or write it again");
+  return static_cast<std::size_t>(samples);
+}
+
+/// Reads a NIfTI, Analyze or FreeSurfer volume; only NRRD can hold a list of components.
+void readNifti(const std::filesystem::path& path, const StoredSamples& stored,
+               const NiftiHeader& header, Components allowed, const SampleConsumer& consume,
                const VolumeChoice& choice) {
-  const NiftiHeader header = readNiftiHeader(path, choice);
   const std::size_t axes = header.size.size();
   if (axes < 3)
     throw inputError(ErrorCode::unsupportedFile, path, "is an image of ", axes,
@@ -193,17 +205,19 @@ void readNifti(const std::filesystem::path& path, Components allowed, const Samp
   image.frameCount = hasFrames ? static_cast<std::size_t>(header.size[3]) : 1;
   const FrameChoice frames{
       image.frameCount, chooseFrame(path.string(), choice.frame, image.frameCount, image.warnings)};
-  const std::size_t samples = static_cast<std::size_t>(size.prod()) * image.frameCount;
-  consume(image, pickFrame(openNiftiSamples(path, header, samples), frames));
+  const std::size_t samples = multiplySizes(path, header.size);
+  consume(image, pickFrame(openNiftiSamples(path, stored, header, samples), frames));
 }
 
 void readChecked(const std::filesystem::path& path, MedicalFormat format, Components allowed,
                  const SampleConsumer& consume, const VolumeChoice& choice) {
   const StoredSamples stored = locateSamples(path, format); // rejects what would crash ITK
   if (format == MedicalFormat::nifti)
-    return readNifti(path, allowed, consume, choice);
+    return readNifti(path, stored, readNiftiHeader(path, choice), allowed, consume, choice);
   if (choice.niftiForm)
     throw inputError(ErrorCode::unknownForm, path, "is no NIfTI file, so it has no qform or sform");
+  if (format == MedicalFormat::mgh)
+    return readNifti(path, stored, readMghHeader(path), allowed, consume, choice);
   const SuppressItkOutput suppress;
   const auto io = makeImageIo(format);
   io->SetFileName(path.string());
@@ -216,9 +230,14 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
                      .components = io->GetNumberOfComponents(),
                      .hasFrames = countFrames(*io) > 1,
                      .fields = readTextFields(*io)};
-  if (!stored.hasSpacing)
-    image.warnings.push_back(
-        makeMessage(ErrorCode::assumedGeometry, path, "has no spacing; 1 mm voxels are assumed"));
+  // The oldest segmentations of Slicer have another convention (SegmentationReader.cxx).
+  const bool hasAxes = stored.hasAxes || image.fields.contains("Segmentation_Extent");
+  if (!stored.hasSpacing || !hasAxes)
+    image.warnings.push_back(makeMessage(
+        ErrorCode::assumedGeometry, path,
+        stored.hasSpacing ? "" : "has no spacing: 1 mm is assumed",
+        stored.hasSpacing || hasAxes ? "" : "; ",
+        hasAxes ? "" : "has no space: axes are assumed toward left, posterior and superior"));
   if (image.hasFrames)
     image.components = countFrames(*io);
   if (allowed == Components::oneFrame) {
@@ -244,7 +263,7 @@ void rejectMisnamed(const std::filesystem::path& path) {
     throw inputError(ErrorCode::damagedFile, path,
                      "is a web page, not the file; download the file itself");
   const std::string extension = lowercaseExtension(path);
-  if (start.starts_with("\x1f\x8b") && extension != ".gz")
+  if (start.starts_with("\x1f\x8b") && extension != ".gz" && extension != ".mgz")
     throw inputError(ErrorCode::damagedFile, path, "is compressed by gzip; name it ",
                      path.filename().string(), ".gz");
   if (extension == ".gz" && !start.empty() && !start.starts_with("\x1f\x8b"))
@@ -261,9 +280,9 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
   if (lowercaseExtension(path) == ".vtm")
     throw inputError(ErrorCode::segmentationAsVolume, path, "is a segmentation");
   if (!format)
-    throw inputError(
-        ErrorCode::unsupportedFile, path,
-        "has an unknown extension; give a .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd file");
+    throw inputError(ErrorCode::unsupportedFile, path,
+                     "has an unknown extension; give a .nrrd, .nhdr, .nii, .nii.gz, .hdr, .mgz, "
+                     ".mha or .mhd file");
   rejectMisnamed(path);
   try {
     readChecked(path, *format, allowed, consume, choice);

@@ -1,6 +1,5 @@
 #include "files/medical/NiftiForms.h"
 
-#include "files/medical/MedicalHeader.h"
 #include "files/medical/MedicalImage.h"
 #include "files/medical/NiftiSamples.h"
 

@@ -1,7 +1,7 @@
 #include "files/medical/NiftiSamples.h"
 
 #include "base/Error.h"
-#include "files/medical/MedicalHeader.h"
+#include "files/medical/MghHeader.h"
 
 #include <zlib.h>
 
@@ -64,29 +64,40 @@ private:
 } // namespace
 
 NiftiHeader readNiftiHeader(const std::filesystem::path& path, const VolumeChoice& choice) {
-  NiftiStream stream(path);
-  NiftiBytes bytes;
+  NiftiStream stream(findNiftiFiles(path).header);
+  std::string bytes(nifti1Bytes, '\0');
   stream.read(bytes.data(), bytes.size());
+  bytes.resize(countNiftiHeaderBytes(bytes));
+  stream.read(&bytes[nifti1Bytes], bytes.size() - nifti1Bytes);
   return parseNiftiHeader(bytes, path, choice);
 }
 
+NiftiHeader readMghHeader(const std::filesystem::path& path) {
+  NiftiStream stream(path);
+  std::string bytes(mghHeaderBytes, '\0');
+  stream.read(bytes.data(), bytes.size());
+  return parseMghHeader(bytes, path);
+}
+
 std::string readNiftiExtensions(const std::filesystem::path& path, const NiftiHeader& header) {
-  constexpr std::int64_t begin = 348, maxBytes = std::int64_t{4} << 20;
-  const std::int64_t bytes = header.offset - begin;
+  constexpr std::int64_t maxBytes = std::int64_t{4} << 20;
+  if (header.end == 0)
+    return {};
+  const std::int64_t bytes = header.offset - header.end;
   std::string text(static_cast<std::size_t>(std::clamp<std::int64_t>(bytes, 0, maxBytes)), '\0');
   NiftiStream stream(path);
-  stream.seek(begin);
+  stream.seek(header.end);
   stream.read(text.data(), text.size());
   // The first of four bytes states whether there are extensions.
   return text.size() > 4 && text[0] != 0 ? text.substr(4) : std::string();
 }
 
-SampleSource openNiftiSamples(const std::filesystem::path& path, const NiftiHeader& header,
-                              std::size_t count) {
-  const auto stream = std::make_shared<NiftiStream>(path);
-  checkDeclaredBytes(path, locateSamples(path, MedicalFormat::nifti), count,
-                     bytesPerSample(header.type),
-                     static_cast<std::uint64_t>(header.offset) - sizeof(NiftiBytes));
+SampleSource openNiftiSamples(const std::filesystem::path& path, const StoredSamples& stored,
+                              const NiftiHeader& header, std::size_t count) {
+  const auto offset = static_cast<std::uint64_t>(header.offset);
+  checkDeclaredBytes(path, stored, count, bytesPerSample(header.type),
+                     stored.isCompressed ? offset : offset - stored.offset);
+  const auto stream = std::make_shared<NiftiStream>(stored.files.back());
   stream->seek(header.offset);
   return {
       .type = header.type,

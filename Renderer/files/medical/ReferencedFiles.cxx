@@ -1,6 +1,7 @@
 #include "files/medical/ReferencedFiles.h"
 
 #include "files/formats/TextHeader.h"
+#include "files/medical/MedicalHeader.h"
 #include "io/InputRegistry.h"
 
 #include <pugixml.hpp>
@@ -104,8 +105,8 @@ std::vector<fs::path> findReferencedFiles(const fs::path& path) {
     return readHeaderReferences(path, "=", "elementdatafile");
   if (extension == ".vtm")
     return readMultiBlockReferences(path);
-  if (extension == ".hdr" || extension == ".img")
-    return {fs::path(path).replace_extension(extension == ".hdr" ? ".img" : ".hdr")};
+  if (const auto [header, samples] = findNiftiFiles(path); header != samples)
+    return {path == header ? samples : header};
   return {};
 }
 

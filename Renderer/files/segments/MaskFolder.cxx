@@ -25,7 +25,8 @@ using Paths = std::vector<fs::path>;
 
 Paths selectVolumeFiles(Paths files) {
   std::erase_if(files, [](const fs::path& file) {
-    return file.filename().string().starts_with('.') || !findMedicalFormat(file);
+    return file.filename().string().starts_with('.') || !findMedicalFormat(file) ||
+           findNiftiFiles(file).header != file; // a pair is read by its header
   });
   return files;
 }

@@ -255,7 +255,8 @@ Affine compose(const Path& path, const std::vector<TransformRecord>& records) {
 void checkExtension(const Path& path) {
   const std::string extension = lowercaseExtension(path);
   static const std::set<std::string> known = {".tfm", ".txt", ".h5", ".hdf5", ".mat"},
-                                     images = {".nrrd", ".nhdr", ".nii", ".gz", ".mha", ".mhd"};
+                                     images = {".nrrd", ".nhdr", ".nii", ".gz",
+                                               ".mgz",  ".mha",  ".mhd"};
   if (images.contains(extension))
     throw inputError(ErrorCode::unsupportedFile, path,
                      "is a displacement field, which is not linear; ", hardenHint);
