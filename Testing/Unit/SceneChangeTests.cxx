@@ -143,7 +143,6 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Frame",
                [](RenderRequest& r) { r.volume.frame = 0; },
                {.volume = true,
-                .focus = true,
                 .transfer = true,
                 .camera = true,
                 .lights = true,
