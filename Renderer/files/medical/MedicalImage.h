@@ -1,6 +1,6 @@
 #pragma once
-// Reads NRRD, NIfTI and MetaImage files. ITK parses the headers, except NIfTI's. Raw samples and
-// single compressed streams are read by our own code, in one pass. Callers normally use
+// Reads files of the formats of MedicalHeader.h. ITK parses NRRD and MetaImage headers. Raw samples
+// and single compressed streams are read by our own code, in one pass. Callers normally use
 // VolumeReader.h or SegmentationReader.h.
 
 #include "base/Error.h"
