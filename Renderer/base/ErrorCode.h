@@ -37,8 +37,10 @@ enum class ErrorCode : std::uint8_t {
   nonFiniteVoxels,          ///< warning
   possibleHounsfieldOffset, ///< warning
   removedHounsfieldOffset,  ///< warning
+  removedTable,             ///< warning: of the scanner
   segmentationAsVolume,
   segmentationRequired, ///< the request has a focus
+  uncertainTable,       ///< warning: the table of the scanner remains
   unknownForm,          ///< of a NIfTI header
   unknownFrame,
 

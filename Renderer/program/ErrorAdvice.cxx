@@ -38,6 +38,7 @@ constexpr auto adviceTable = [] {
       {noVoxelToColor, "remove --materials"},
       {possibleHounsfieldOffset, "--transfer-shift 1024 adapts a CT transfer function"},
       {removedHounsfieldOffset, "--transfer-shift -1024 reverts this"},
+      {removedTable, "--table keep shows it"},
       {scaleOfPerspectiveCamera, "use --angle, or add --projection orthographic"},
       {segmentationAsVolume, "give its volume, and this file as --segmentation"},
       {segmentationRequired, "give --segmentation FILE"},

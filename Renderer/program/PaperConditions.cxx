@@ -29,6 +29,7 @@ constexpr Condition conditions[] = {
     {"context-density", "1", Needs::focus},
     {"gradient", "central", Needs::nothing},
     {"volume-smoothing", "off", Needs::nothing},
+    {"table", "keep", Needs::nothing},
 };
 
 bool hasWord(const OptionValues& values, const std::string& name,

@@ -203,6 +203,12 @@ struct RenderOptionTable {
            .bind(options.smoothing, readVolumeSmoothing)
            .withDefault("auto")
            .withNamedValues({"auto", "off"})},
+      {"table", "auto|keep|remove", appearanceGroup,
+       "The table of the scanner: remove it, with what is below its top but for segments, keep it, "
+       "or auto: remove it from CT if it is found with certainty",
+       ValueSpec::choice(scene.table, {{"auto", TableRequest::automatic},
+                                       {"keep", TableRequest::keep},
+                                       {"remove", TableRequest::remove}})},
       {"materials", "none|library|contrast|FILE", appearanceGroup,
        "Segment colors by material: none, library (Fenestra's), a .json file that extends the "
        "library, or contrast: library colors, adjusted so that the focus is distinguishable; "

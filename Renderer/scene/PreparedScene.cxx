@@ -48,10 +48,15 @@ void PreparedScene::prepare() {
       m_namedLights.get(r.lightsName(), r.environment, r.environmentMap); // fails early
   if (r.transfer)
     m_namedTransfer.get(*r.transfer, m_input);
-  const auto raw = m_volume.get(m_input, *m_volumeChoice.get(m_input, r.volume, r.segmentation));
+  const auto read = m_volume.get(m_input, *m_volumeChoice.get(m_input, r.volume, r.segmentation));
   const auto settings = m_settings.get(m_input, r.volume.name, r.view.isSceneCamera());
   if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
-    m_segments.get(m_input, chooseSegmentation(), raw->volume.grid);
+    m_segments.get(m_input, chooseSegmentation(), read->volume.grid);
+  if (r.table != TableRequest::keep)
+    m_table.get(read, r.table);
+  if (m_table.result() && m_table->table)
+    m_withoutTable.get(read, m_table.result(), m_segments.result());
+  const VolumeHandle raw = rawVolume();
   if (r.focusStyle.hasOrganMargin && !r.focus.empty() &&
       isPlausibleModality(Modality::ct, raw->volume))
     m_trimmed.get(m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus, raw);
@@ -113,9 +118,9 @@ InputChoice PreparedScene::chooseSegmentation() const {
 VolumeHandle PreparedScene::smooth() {
   const RenderRequest& r = m_request;
   if (r.smoothing.kind == SmoothingRequest::Kind::off)
-    return m_volume.result();
+    return rawVolume();
   const auto smoothed =
-      m_smoothed.get(m_volume.result(), r.smoothing,
+      m_smoothed.get(rawVolume(), r.smoothing,
                      findModality(m_volume->volume, r.transferModality, m_transfer->source));
   if (smoothed->input && m_transfer->islands)
     m_islands.get(currentVolume(), m_transfer.result(), m_focus.result());
@@ -126,7 +131,11 @@ VolumeHandle PreparedScene::currentVolume() const {
   for (const auto& stage : {m_islands.result(), m_smoothed.result()})
     if (stage && stage->input)
       return {stage, &*stage->input};
-  return m_volume.result();
+  return rawVolume();
+}
+
+VolumeHandle PreparedScene::rawVolume() const {
+  return m_withoutTable.result() ? m_withoutTable.result() : m_volume.result();
 }
 
 std::optional<SmoothingReport> PreparedScene::smoothing() const {
@@ -162,15 +171,13 @@ void PreparedScene::makeTint(const std::string& name) {
   if (materials->table.detectsSkin)
     m_skin.get(currentVolume());
   if (isAdjusted && m_transfer->isByModality)
-    m_transparent.get(currentSegments(), hasVoxels, r.focus, m_volume.result(),
-                      m_transfer.result());
+    m_transparent.get(currentSegments(), hasVoxels, r.focus, rawVolume(), m_transfer.result());
   const auto plan = m_plan.get(m_segments.result(), hasVoxels, materials, r.materialChanges,
                                isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result(),
                                m_transparent.result());
   const auto segments =
-      hasSolidFocus()
-          ? *m_separated.get(currentSegments(), m_transparent.result(), m_volume.result())
-          : currentSegments();
+      hasSolidFocus() ? *m_separated.get(currentSegments(), m_transparent.result(), rawVolume())
+                      : currentSegments();
   const auto weights = m_labelWeights.get(segments, plan->parts, m_skin.result(),
                                           r.focusStyle.shaping.smoothing, volume().grid);
   const auto transfer = m_transfer.result();
@@ -186,9 +193,10 @@ void PreparedScene::makeTint(const std::string& name) {
 StageSeconds PreparedScene::seconds() const {
   const ClipResult unused, &clip = m_clip.isUpdated() ? *m_clip : unused; // unused: 0 seconds
   return {.load = m_namedTransfer.seconds() + m_volumeChoice.seconds() + m_volume.seconds() +
-                  m_settings.seconds() + m_segments.seconds() + m_trimmed.seconds() +
-                  m_focus.seconds() + m_sceneTransfer.seconds() + m_hasVoxels.seconds() +
-                  m_content.seconds() + m_transfer.seconds(),
+                  m_table.seconds() + m_withoutTable.seconds() + m_settings.seconds() +
+                  m_segments.seconds() + m_trimmed.seconds() + m_focus.seconds() +
+                  m_sceneTransfer.seconds() + m_hasVoxels.seconds() + m_content.seconds() +
+                  m_transfer.seconds(),
           .smoothing = m_smoothed.seconds() + m_islands.seconds(),
           .materials = m_materials.seconds() + m_transparent.seconds() + m_separated.seconds() +
                        m_plan.seconds() + m_skin.seconds() + m_labelWeights.seconds() +
@@ -204,7 +212,8 @@ StageSeconds PreparedScene::seconds() const {
 }
 
 UpdatedStages PreparedScene::updatedStages() const {
-  return {m_volume.isUpdated() || m_smoothed.isUpdated() || m_islands.isUpdated(),
+  return {m_volume.isUpdated() || m_withoutTable.isUpdated() || m_smoothed.isUpdated() ||
+              m_islands.isUpdated(),
           m_focus.isUpdated(),
           m_transfer.isUpdated(),
           m_camera.isUpdated(),
@@ -259,6 +268,8 @@ std::vector<std::string> PreparedScene::choices() const {
 std::vector<Message> PreparedScene::warnings() const {
   std::vector<Message> warnings = m_request.omissions;
   append(volume().warnings, warnings);
+  if (m_table.result())
+    append(m_table->warnings, warnings);
   append(m_settings->warnings, warnings);
   if (m_segments.result())
     append(m_segments->segmentation.warnings(), warnings);

@@ -5,6 +5,7 @@
 
 #include "integrator/render/Render.h"
 #include "scene/SolidFocus.h"
+#include "scene/TableRemoval.h"
 #include "scene/VolumeSmoothing.h"
 
 #include <tuple>
@@ -97,6 +98,7 @@ private:
   /// Smooths the volume if the request says so. Returns currentVolume().
   VolumeHandle smooth();
   VolumeHandle currentVolume() const;
+  VolumeHandle rawVolume() const; ///< without the table of the scanner, but not smoothed
   /// Segments with their margins.
   Handle<SegmentsInput> currentSegments() const {
     return m_trimmed.result() ? m_trimmed->input : m_segments.result();
@@ -110,12 +112,12 @@ private:
   }
   template <typename Self>
   static auto stages(Self& s) {
-    return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volumeChoice, s.m_volume, s.m_settings,
-                    s.m_segments, s.m_trimmed, s.m_focus, s.m_sceneTransfer, s.m_hasVoxels,
-                    s.m_content, s.m_transfer, s.m_smoothed, s.m_islands, s.m_materials, s.m_skin,
-                    s.m_transparent, s.m_separated, s.m_plan, s.m_labelWeights, s.m_tint,
-                    s.m_interfaces, s.m_tintContrast, s.m_adjustedTint, s.m_mixture,
-                    s.m_focusWarnings, s.m_view, s.m_minMaxGrid, s.m_rawMinMaxGrid,
+    return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volumeChoice, s.m_volume, s.m_table,
+                    s.m_withoutTable, s.m_settings, s.m_segments, s.m_trimmed, s.m_focus,
+                    s.m_sceneTransfer, s.m_hasVoxels, s.m_content, s.m_transfer, s.m_smoothed,
+                    s.m_islands, s.m_materials, s.m_skin, s.m_transparent, s.m_separated, s.m_plan,
+                    s.m_labelWeights, s.m_tint, s.m_interfaces, s.m_tintContrast, s.m_adjustedTint,
+                    s.m_mixture, s.m_focusWarnings, s.m_view, s.m_minMaxGrid, s.m_rawMinMaxGrid,
                     s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
                     s.m_majorants, s.m_features);
   }
@@ -126,6 +128,8 @@ private:
   CachedStage<&findTransfer> m_namedTransfer; ///< unused without --transfer
   CachedStage<&Input::chooseForm> m_volumeChoice;
   CachedStage<&Input::volume> m_volume;
+  CachedStage<&findTable> m_table;          ///< unused if the table stays
+  CachedStage<&removeTable> m_withoutTable; ///< unused if there is no table
   CachedStage<&Input::settings> m_settings;
   CachedStage<&Input::segments> m_segments; ///< unused without a focus or materials
   CachedStage<&trimSegments> m_trimmed;     ///< unused without organ margins

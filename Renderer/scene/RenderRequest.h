@@ -91,6 +91,9 @@ inline constexpr const char* contrastMaterials = "contrast";
 /// Library materials. Around a focus, the context has defaultContextSaturation by default.
 inline constexpr const char* libraryMaterials = "library";
 
+/// --table
+enum class TableRequest { automatic, keep, remove };
+
 struct RenderRequest {
   std::filesystem::path input;                  ///< a volume, a DICOM folder, or a Slicer scene
   VolumeChoice volume = {};                     ///< if there are several
@@ -106,6 +109,7 @@ struct RenderRequest {
   /// Smoothing of the volume. `automatic`: with estimated noise; whether the outputs allow it is
   /// already decided (isSmoothed).
   SmoothingRequest smoothing = {};
+  TableRequest table = TableRequest::automatic; ///< of the scanner
   double shift = 0.0;
   double density = 1.0;
   GradientKind gradient = GradientKind::sobel;
