@@ -139,8 +139,8 @@ void measureTissues(const Table& table, const PreparedScene& scene, const Input&
                     const VisibleSurface& surface, const PixelMask& focus) {
   std::optional<SegmentsInput> segments;
   if (scene.focus())
-    segments =
-        input.segments({request.volume, request.segmentation, request.labels}, scene.volume().grid);
+    segments = input.segments({request.volume.name, request.segmentation, request.labels},
+                              scene.volume().grid);
   const TissueRegions regions =
       findTissueRegions(scene, surface, focus, segments ? &segments->segmentation : nullptr);
   const double pitch = scene.camera().pixelPitch();
