@@ -217,6 +217,20 @@ std::vector<std::vector<SegmentInfo>> groupAdjacent(const Segmentation& segmenta
   return result;
 }
 
+/// Divides voxels that are too thick for an OrganMargin, if their halves are not. Slices that are
+/// much thicker than their pixels are interpolated instead (interpolateSlices).
+Handle<SegmentsInput> divideThickVoxels(const Handle<SegmentsInput>& segments) {
+  constexpr std::int64_t mostVoxels = 1 << 27; // memory
+  const Grid& labels = segments->segmentation.grid();
+  const double least = labels.spacing().minCoeff(), greatest = labels.spacing().maxCoeff();
+  if (greatest < thickestVoxel || 0.5 * greatest >= thickestVoxel || greatest >= 2.0 * least ||
+      8 * labels.voxelCount() > mostVoxels)
+    return segments;
+  const auto divided = std::make_shared<SegmentsInput>(*segments);
+  divided->segmentation.divideVoxels();
+  return divided;
+}
+
 } // namespace
 
 TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
@@ -224,7 +238,8 @@ TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
                              const std::vector<std::string>& names, const VolumeHandle& volume) {
   TrimmedSegments trimmed{segments, {}};
   std::shared_ptr<SegmentsInput> copy;
-  const Segmentation& original = segments->segmentation;
+  const Handle<SegmentsInput> whole = divideThickVoxels(segments);
+  const Segmentation& original = whole->segmentation;
   std::vector<SegmentInfo> present;
   for (const std::string& name : names)
     if (const std::size_t number = original.find(name); (*hasVoxels)[number])
@@ -234,7 +249,7 @@ TrimmedSegments trimSegments(const Handle<SegmentsInput>& segments,
         findOrganMargin(original.makeMask(group, volume->volume.grid), volume->volume);
     if (margin.volume > 0.0) {
       if (!copy)
-        trimmed.input = copy = std::make_shared<SegmentsInput>(*segments);
+        trimmed.input = copy = std::make_shared<SegmentsInput>(*whole);
       for (const SegmentInfo& segment : group)
         copy->segmentation.restrictSegment(segment, margin.kept);
     }

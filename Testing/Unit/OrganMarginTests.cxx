@@ -72,7 +72,7 @@ Phantom makePhantom(double noise, const std::optional<Lesion>& lesion = {}, doub
 }
 
 /// Fraction of the voxels with a face on the mask's surface in which the organ is less than half.
-double computeForeignSurface(const Mask& mask) {
+double computeForeignSurface(const Mask& mask, double scale = 1.0) {
   double foreign = 0.0, all = 0.0;
   const Size3& size = mask.grid.size;
   const std::array<std::int64_t, 3> steps = {1, size.x(), size.x() * size.y()};
@@ -82,7 +82,7 @@ double computeForeignSurface(const Mask& mask) {
         std::ranges::all_of(steps, [&](auto step) { return at(i - step) && at(i + step); }))
       continue;
     const Size3 voxel(i % size.x(), i / size.x() % size.y(), i / steps[2]);
-    foreign += computeDistance(mask.grid.indexToWorld * voxel.cast<double>()) > 0.0;
+    foreign += computeDistance(mask.grid.indexToWorld * voxel.cast<double>() / scale) > 0.0;
     all += 1.0;
   }
   return foreign / all;
@@ -205,6 +205,42 @@ TEST(OrganMargin, RemovesTheChestWallFromLungsAndPreservesNodules) {
     for (const double depth : {0.0, 5.0, 7.0}) {
       const Lesion nodule{{radii.x() - depth, 0.0, -4.0}, 10.0, organ - 210.0}; // 40 HU
       EXPECT_LE(computeLoss(makeLung(noise, nodule), nodule), 0.05) << depth << " " << noise;
+    }
+  }
+}
+
+/// The segment of a phantom with thick voxels, trimmed in halves of them.
+Mask trimDivided(const Phantom& phantom) {
+  LargeArray<std::uint8_t> labels(phantom.label.voxels.begin(), phantom.label.voxels.end());
+  const SegmentsInput segments{
+      Segmentation("s", phantom.label.grid, 1, std::move(labels), {{"1", "organ"}})};
+  const TrimmedSegments trimmed = trimSegments(
+      std::make_shared<SegmentsInput>(segments), std::make_shared<std::vector<bool>>(1, true),
+      {"1"}, std::make_shared<VolumeInput>(VolumeInput{phantom.volume, {}}));
+  EXPECT_TRUE(trimmed.margins.at(0).isApplied);
+  return trimmed.input->segmentation.makeFocusMask({"1"}, phantom.volume.grid);
+}
+
+TEST(OrganMargin, IsFoundInHalvesOfThickVoxels) {
+  constexpr double scale = 2.0; // voxels of 3 mm
+  for (const double noise : {10.0, 33.0}) {
+    const Phantom phantom = makePhantom(noise, {}, scale);
+    const Mask kept = trimDivided(phantom);
+    EXPECT_NEAR(kept.grid.spacing().maxCoeff(), 1.5, 1e-9);
+    EXPECT_GT(computeForeignSurface(phantom.label, scale), 0.4);
+    EXPECT_LT(computeForeignSurface(kept, scale), 0.02) << noise;
+    for (const double value : {0.0, 400.0}) {
+      const Lesion lesion{{scale * radii.x() - 7.0, 0.0, -4.0}, 10.0, value};
+      const Phantom diseased = makePhantom(noise, lesion, scale);
+      const Mask rest = trimDivided(diseased);
+      double lost = 0.0, all = 0.0;
+      const Mask body =
+          makeMask(rest.grid, [&](const Vec3& p) { return lesion.distance(p) < 0.0; });
+      for (std::size_t i = 0; i < body.voxels.size(); ++i) {
+        all += body.voxels[i];
+        lost += body.voxels[i] && !rest.voxels[i];
+      }
+      EXPECT_LE(lost, 0.05 * all) << noise << " " << value;
     }
   }
 }

@@ -404,10 +404,10 @@ TEST(SegmentationReader, StatisticsHaveVoxelsAndBoundsOfEachSegment) {
   for (const Size3& voxel : {Size3(1, 2, 3), Size3(2, 2, 3), Size3(1, 4, 5)})
     labels[2 * static_cast<std::size_t>(toIndex(grid, voxel.x(), voxel.y(), voxel.z()))] = 1;
   labels[1] = 1;
-  const Segmentation s("test", grid, 2, labels,
-                       {{.id = "a", .name = "a"},
-                        {.id = "b", .name = "b", .layer = 1},
-                        {.id = "c", .name = "c", .labelValue = 9}});
+  Segmentation s("test", grid, 2, labels,
+                 {{.id = "a", .name = "a"},
+                  {.id = "b", .name = "b", .layer = 1},
+                  {.id = "c", .name = "c", .labelValue = 9}});
   const std::vector<SegmentStatistics> statistics = s.statistics();
   ASSERT_EQ(statistics.size(), 3u);
   EXPECT_EQ(statistics[0].voxels, 3);
@@ -417,6 +417,17 @@ TEST(SegmentationReader, StatisticsHaveVoxelsAndBoundsOfEachSegment) {
   EXPECT_TRUE(isApprox(statistics[1].bounds.lower, Vec3(9, 18.5, 29.5)));
   EXPECT_EQ(statistics[2].voxels, 0);
   EXPECT_TRUE(statistics[2].bounds.upper == Vec3::Zero());
+
+  const Vec3 native = s.nativeSpacing();
+  s.divideVoxels();
+  EXPECT_TRUE(isApprox(s.grid().spacing(), 0.5 * grid.spacing()));
+  EXPECT_TRUE(isApprox(s.nativeSpacing(), native));
+  const std::vector<SegmentStatistics> divided = s.statistics();
+  for (std::size_t i = 0; i < divided.size(); ++i) {
+    EXPECT_EQ(divided[i].voxels, 8 * statistics[i].voxels);
+    EXPECT_TRUE(isApprox(divided[i].bounds.lower, statistics[i].bounds.lower));
+    EXPECT_TRUE(isApprox(divided[i].bounds.upper, statistics[i].bounds.upper));
+  }
 }
 
 } // namespace

@@ -91,6 +91,8 @@ public:
   /// Statistics of each segment, in order; one pass over the labels per layer.
   std::vector<SegmentStatistics> statistics() const;
 
+  /// Divides each voxel of all label maps into eight with the same labels.
+  void divideVoxels();
   /// Removes a segment's voxels that a binary mask on its label map's lattice does not contain.
   void restrictSegment(const SegmentInfo& segment, const Mask& mask);
 

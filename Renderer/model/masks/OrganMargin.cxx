@@ -1,8 +1,8 @@
 #include "model/masks/OrganMargin.h"
 
 #include "base/Distribution.h"
-
-#include <tbb/parallel_for.h>
+#include "model/masks/Distances.h"
+#include "model/masks/Rows.h"
 
 #include <algorithm>
 #include <array>
@@ -32,17 +32,6 @@ constexpr double lesionFraction = 0.6;  ///< of the range: partial volume around
 constexpr double leastSize = 12.0, leastInside = 1.0 / 3.0, mostExtent = 20.0;
 constexpr double maxMoved = 12.0; ///< mm, measured
 
-using Marks = std::vector<std::uint8_t>; ///< 1: voxels of a set
-
-/// Calls visit(y, z, index of the first voxel) for each row, in parallel.
-template <typename Visitor>
-void forEachRow(const Size3& size, const Visitor& visit) {
-  tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
-    for (std::int64_t y = 0; y < size.y(); ++y)
-      visit(y, z, linearIndex({0, y, z}, size));
-  });
-}
-
 /// Calls visit(voxel, index) for each voxel.
 template <typename Visitor>
 void forEachVoxel(const Size3& size, const Visitor& visit) {
@@ -62,53 +51,6 @@ void forEachNeighbor(const Size3& voxel, const Size3& size, const Visitor& visit
       if (next[axis] >= 0 && next[axis] < size[axis])
         visit(next, linearIndex(next, size), axis);
     }
-}
-
-/// Squared distances along rows to the nearest marked voxel, limited to `most`.
-std::vector<float> computeRowDistances(const Marks& marks, const Grid& grid, float most) {
-  const auto step = static_cast<float>(grid.spacing().x());
-  const auto count = static_cast<std::size_t>(grid.size.x());
-  std::vector<float> squared(marks.size());
-  forEachRow(grid.size, [&](std::int64_t, std::int64_t, std::size_t row) {
-    float away = most;
-    for (std::size_t i = row; i < row + count; ++i)
-      squared[i] = away = marks[i] ? 0.0F : std::min(most, away + step);
-    away = most;
-    for (std::size_t i = row + count; i-- > row;) {
-      away = marks[i] ? 0.0F : std::min(most, away + step);
-      const float least = std::min(squared[i], away);
-      squared[i] = least * least;
-    }
-  });
-  return squared;
-}
-
-/// Distances, mm, from each voxel to the nearest marked one, limited to `most`.
-std::vector<float> computeDistances(const Marks& marks, const Grid& grid, double most) {
-  const Size3& size = grid.size;
-  std::vector<float> squared = computeRowDistances(marks, grid, static_cast<float>(most));
-  for (const int axis : {1, 2}) {
-    const auto range = static_cast<std::int64_t>(most / grid.spacing()[axis]);
-    const auto edge = static_cast<float>(grid.spacing()[axis]);
-    const std::int64_t stride = axis == 1 ? size.x() : size.x() * size.y();
-    std::vector<float> result(squared.size());
-    forEachRow(size, [&](std::int64_t y, std::int64_t z, std::size_t row) {
-      const std::int64_t at = axis == 1 ? y : z;
-      float* const to = &result[row];
-      std::copy_n(&squared[row], size.x(), to);
-      const std::int64_t end = std::min(range, size[axis] - 1 - at);
-      for (std::int64_t step = std::max(-range, -at); step <= end; ++step) {
-        const float* const from = &squared[row] + step * stride;
-        const float across = edge * edge * static_cast<float>(step * step);
-        std::transform(to, to + size.x(), from, to,
-                       [across](float a, float b) { return std::min(a, b + across); });
-      }
-    });
-    squared = std::move(result);
-  }
-  for (float& value : squared)
-    value = std::sqrt(value);
-  return squared;
 }
 
 /// Volume at the voxels of another grid.
@@ -163,6 +105,7 @@ class OrganTrimmer {
 public:
   OrganTrimmer(const Mask& segment, const Volume& volume)
       : m_grid(segment.grid),
+        m_resolution(volume.grid.spacing().maxCoeff()),
         m_inside(segment.voxels),
         m_isBeside(segment.voxels.size()),
         m_isNear(segment.voxels.size()),
@@ -300,7 +243,7 @@ private:
     const Vec3 spacing = m_grid.spacing();
     const double edge = spacing.maxCoeff();
     const double middle = spacing.sum() - edge - spacing.minCoeff();
-    return std::max({radius + 0.5 * edge, 1.01 * edge, 1.45 * middle});
+    return std::max({radius + 0.5 * edge, 1.01 * std::max(edge, m_resolution), 1.45 * middle});
   }
 
   /// Centers of balls of `radius` mm in a set of voxels.
@@ -357,6 +300,7 @@ private:
   }
 
   const Grid& m_grid;
+  double m_resolution; ///< edge of the volume's voxels, mm
   const Marks& m_inside;
   Marks m_isBeside; ///< outside, with a face in common with the segment
   Marks m_isNear;   ///< inside or at most `deep` outside
@@ -368,9 +312,7 @@ private:
 OrganMargin findOrganMargin(const Mask& segment, const Volume& volume) {
   constexpr double mostSteps = 64.0; // of a distance, and 2^28 voxels: bounds time and memory
   const Vec3 spacing = segment.grid.spacing();
-  // Thick voxels would leave steps as deep as what is removed.
-  const bool isCoarse = 2.0 * spacing.maxCoeff() >= static_cast<double>(maxDepth);
-  if (isCoarse || deep > mostSteps * spacing.minCoeff() ||
+  if (spacing.maxCoeff() >= thickestVoxel || deep > mostSteps * spacing.minCoeff() ||
       segment.grid.voxelCount() > std::int64_t{1} << 28)
     return {.isApplied = false, .kept = segment};
   const OrganTrimmer trimmer(segment, volume);

@@ -8,9 +8,12 @@
 
 namespace fenestra {
 
+/// Thinner voxels have margins, mm. Thick ones would leave steps as deep as what is removed.
+inline constexpr double thickestVoxel = 3.0;
+
 struct OrganMargin {
-  /// False: the organ is too small, not of one tissue, or a bone; voxels are 3 mm or thicker; or
-  /// more than a third would be removed. `kept` is then the segment.
+  /// False: the organ is too small, not of one tissue, or a bone; voxels are too thick; or more
+  /// than a third would be removed. `kept` is then the segment.
   bool isApplied = false;
   Mask kept;                    ///< the segment without the removed voxels, on its grid
   double volume = 0.0;          ///< removed, mm^3
