@@ -30,11 +30,14 @@ enum class ErrorCode : std::uint8_t {
   assumedForm,           ///< warning: a NIfTI header has two that disagree
   assumedFrame,          ///< warning: the first of several
   assumedGeometry,       ///< warning: the file states no or contradictory positions
+  assumedUnits,          ///< warning: of a PET
   ignoredRequest,        ///< warning: a stored part of the request is not used
   ignoredSceneSetting,   ///< warning: Slicer renders it differently
+  interpolatedSlices,    ///< warning: DICOM slices are missing or unevenly spaced
   invalidSceneCamera,
   missingTransferPoints,    ///< of a volume property
   nonFiniteVoxels,          ///< warning
+  omittedSlices,            ///< warning: of a DICOM series
   possibleHounsfieldOffset, ///< warning
   removedHounsfieldOffset,  ///< warning
   removedTable,             ///< warning: of the scanner

@@ -1,6 +1,7 @@
 #include "program/Commands.h"
 
 #include "base/Error.h"
+#include "files/medical/DicomReader.h"
 #include "io/InputRegistry.h"
 #include "io/JsonNode.h"
 #include "io/MessageText.h"
@@ -292,11 +293,11 @@ std::string formatNodes(const Json& nodes) {
 }
 
 std::string formatSeries(const Json& series) {
-  std::vector<Row> rows = {{"number", "files", "modality", "description", "uid"}};
+  std::vector<Row> rows = {{"number", "files", "modality", "description", "part", "uid"}};
   for (const Json& one : series)
     rows.push_back({formatTextMember(one, "number", 8), one["files"].dump(),
                     formatTextMember(one, "modality", 8), formatTextMember(one, "description", 24),
-                    formatTextMember(one, "uid", 64)});
+                    formatTextMember(one, "part", 24), formatTextMember(one, "uid", 64)});
   return series.empty() ? "" : formatTable("  ", rows, ">>");
 }
 
@@ -342,7 +343,7 @@ std::string formatInspection(const Inspection& inspection) {
   const std::map<std::string, const char*> kinds = {{"scene", "Slicer scene"},
                                                     {"volume", "volume"},
                                                     {"segmentation", "segmentation or label map"},
-                                                    {"dicom", "DICOM folder"}};
+                                                    {"dicom", "DICOM files"}};
   const bool refused = !inspection["refused"].is_null();
   std::string text = formatParagraph("", inspection["input"].get<std::string>() + ": " +
                                              kinds.at(inspection["kind"]) +
@@ -435,7 +436,8 @@ int inspectCommand(int argc, char** argv, int first) {
   request.volume = readVolumeChoice(merged);
   request.segmentation = merged.text("segmentation");
   request.labels = merged.text("labels");
-  if (request.volume.name && !input.document() && !isFolder(input.path()))
+  if (request.volume.name && !input.document() && !isFolder(input.path()) &&
+      !isDicomFile(input.path()))
     throw usageError("--volume: only for a scene or DICOM folder with several volumes; omit it");
   Inspection inspection = inspectInput(request, input);
   if (Inspection& use = inspection["render"]; !use.is_null())

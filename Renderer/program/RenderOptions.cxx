@@ -4,6 +4,7 @@
 #include "program/RenderOptions.h"
 #include "base/Error.h"
 #include "files/images/ImageFormat.h"
+#include "files/medical/DicomReader.h"
 #include "files/slicer/SceneFiles.h"
 #include "program/Quality.h"
 #include "program/UsageError.h"
@@ -20,12 +21,13 @@ bool hasMaterials(const RenderRequest& scene) {
 
 void checkInput(const OptionValues& values, const RenderRequest& scene) {
   const bool isScene = isSceneFile(scene.input),
+             isDicom = isFolder(scene.input) || isDicomFile(scene.input),
              usesLabels = !scene.focus.empty() || hasMaterials(scene);
-  if (scene.volume.name && !isScene && !isFolder(scene.input))
+  if (scene.volume.name && !isScene && !isDicom)
     throw usageError("--volume: only for a scene or DICOM folder with several volumes; omit it");
-  if (!scene.focus.empty() && !scene.segmentation && !isScene)
+  if (!scene.focus.empty() && !scene.segmentation && !isScene && !isDicom)
     throw usageError("--focus: requires --segmentation FILE, which holds the segments");
-  if (hasMaterials(scene) && !scene.segmentation && !isScene)
+  if (hasMaterials(scene) && !scene.segmentation && !isScene && !isDicom)
     throw usageError("--materials: requires --segmentation FILE, which holds the segments");
   if (!scene.materialChanges.empty() && !hasMaterials(scene))
     throw usageError("--material: contradicts --materials none; omit one of them");

@@ -100,6 +100,8 @@ std::optional<std::string> chooseTransferPreset(const Volume& volume, const Scan
   }
   if (volume.modality == Modality::us)
     return "us-fetal";
+  if (volume.modality == Modality::pt)
+    return std::nullopt; // by the volume's range
   const bool isMr = volume.modality == Modality::mr || !content.brain.empty() || hasAir(volume);
   if (isMr)
     return content.isKnee ? "mr-knee" : "mr-anatomy";

@@ -2,6 +2,7 @@
 
 #include "base/Error.h"
 #include "files/medical/DicomSeries.h"
+#include "files/medical/MedicalHeader.h"
 #include "files/medical/NiftiForms.h"
 #include "files/medical/VolumeReader.h"
 #include "files/segments/MaskFolder.h"
@@ -19,14 +20,9 @@ ScenePlan makePlan(const MrmlScene& scene, const InputChoice& choice, bool needs
   return planRender(scene.document, {choice.volume, choice.segmentation, needsSegmentation});
 }
 
-VolumeInput readVolumeFiles(const std::filesystem::path& path, const VolumeChoice& choice) {
-  if (!isFolder(path))
-    return {readVolume(path, choice), {path.string()}};
-  const DicomSeries series = chooseSeries(findDicomSeries(path), choice.name, path.string());
-  VolumeInput input{readDicomVolume(series, choice)};
-  for (const auto& file : series.files)
-    input.files.push_back(file.string());
-  return input;
+/// True for a folder, and for a DICOM file under any name but that of another volume format.
+bool isDicomInput(const std::filesystem::path& path) {
+  return isFolder(path) || (isDicomFile(path) && !findMedicalFormat(path));
 }
 
 std::optional<SegmentNames> readSegmentNames(const InputChoice& choice) {
@@ -91,6 +87,7 @@ struct Input::SharedState {
   bool isScene = false;
   std::mutex mutex = {};
   std::optional<MrmlScene> scene = {};
+  std::optional<DicomFolder> dicom = {};
 };
 
 Input::Input(std::filesystem::path path) : m_state(std::make_shared<SharedState>()) {
@@ -121,7 +118,7 @@ MrmlScene* Input::scene() const {
 VolumeChoice Input::chooseForm(const VolumeChoice& given,
                                const std::optional<std::string>& segmentation) const {
   VolumeChoice choice = given;
-  if (m_state->isScene || isFolder(path()) || !segmentation)
+  if (m_state->isScene || isDicomInput(path()) || !segmentation)
     return choice;
   const auto readGrids = [&] {
     if (!isFolder(*segmentation))
@@ -133,9 +130,39 @@ VolumeChoice Input::chooseForm(const VolumeChoice& given,
   return choice;
 }
 
+const DicomFolder* Input::dicom() const {
+  if (m_state->isScene || !isDicomInput(path()))
+    return nullptr;
+  const std::lock_guard lock(m_state->mutex);
+  if (!m_state->dicom)
+    m_state->dicom = isFolder(path()) ? findDicomSeries(path()) : findSeriesOfFile(path());
+  return &*m_state->dicom;
+}
+
+std::optional<std::string> Input::segmentationFile(const InputChoice& choice) const {
+  const DicomFolder* const folder = choice.segmentation ? nullptr : dicom();
+  if (!folder)
+    return choice.segmentation;
+  const DicomSeries series = chooseSeries(folder->series, choice.volume, path().string());
+  const auto found = folder->segmentationsOf(series);
+  if (found.size() > 1)
+    throw inputError(ErrorCode::ambiguousSegmentation, path(), "has ", found.size(),
+                     " segmentations of this series: ",
+                     join(
+                         found, ", ", [](const auto& file) { return file.string(); }, 20));
+  return found.empty() ? std::nullopt : std::optional(found.front().string());
+}
+
 VolumeInput Input::volume(const VolumeChoice& choice) const {
+  if (const DicomFolder* const folder = dicom()) {
+    const DicomSeries series = chooseSeries(folder->series, choice.name, path().string());
+    VolumeInput input{readDicomVolume(series, choice)};
+    for (const auto& file : series.files())
+      input.files.push_back(file.string());
+    return input;
+  }
   if (!m_state->isScene)
-    return readVolumeFiles(path(), choice);
+    return {readVolume(path(), choice), {path().string()}};
   return m_state->withScene([&](MrmlScene& scene) {
     Volume volume = readSceneVolume(scene, *makePlan(scene, {choice.name}, false).volume, choice);
     return VolumeInput{std::move(volume), scene.files.usedFiles()};
@@ -179,7 +206,9 @@ SceneTransfer Input::transfer(const std::optional<std::string>& volume,
   });
 }
 
-std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const {
+std::optional<SegmentNames> Input::segmentNames(const InputChoice& given) const {
+  InputChoice choice = given;
+  choice.segmentation = segmentationFile(given);
   if (!m_state->isScene)
     return readSegmentNames(choice);
   return m_state->withScene([&](MrmlScene& scene) {
@@ -193,9 +222,14 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const
   });
 }
 
-SegmentsInput Input::segments(const InputChoice& choice, const std::optional<Grid>& volume) const {
+SegmentsInput Input::segments(const InputChoice& given, const std::optional<Grid>& volume) const {
+  InputChoice choice = given;
+  choice.segmentation = segmentationFile(given);
   const Grid* const grid = volume ? &*volume : nullptr;
   const auto readFile = [&] {
+    if (!choice.segmentation)
+      throw inputError(ErrorCode::segmentationRequired, path(),
+                       "has no segmentation that refers to the series");
     return makeSegments(readSegmentation(*choice.segmentation, grid, choice.labels),
                         listSegmentationFiles(*choice.segmentation));
   };

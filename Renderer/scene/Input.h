@@ -19,6 +19,7 @@
 namespace fenestra {
 
 class MrmlDocument;
+struct DicomFolder;
 struct MrmlScene;
 
 /// Paths of the files that were read, as the user named them.
@@ -81,6 +82,12 @@ public:
   /// The opened scene, shared, for single-threaded use; null if the input is not a Slicer scene.
   MrmlScene* scene() const;
 
+  /// The chosen segmentation; without one, the only SEG or RTSTRUCT beside a DICOM series that
+  /// refers to it. Throws Error (input) if there are several.
+  std::optional<std::string> segmentationFile(const InputChoice& choice) const;
+  /// What the folder, or the folder of the DICOM file, holds; null if the input is neither.
+  const DicomFolder* dicom() const;
+
   VolumeInput volume(const VolumeChoice& choice) const;
   /// Adds the form of a NIfTI volume that agrees with the segmentation file (NiftiForms.h).
   VolumeChoice chooseForm(const VolumeChoice& given,
@@ -93,7 +100,7 @@ public:
                          const std::array<double, 2>& range) const;
   /// Empty without a segmentation.
   std::optional<SegmentNames> segmentNames(const InputChoice& choice) const;
-  /// Segmentation for a volume on the given grid; without one, closed surfaces get their own.
+  /// Segmentation for a volume on the given grid; without a grid, closed surfaces get their own.
   SegmentsInput segments(const InputChoice& choice, const std::optional<Grid>& volume = {}) const;
   /// Volume property with this name or id.
   SceneTransfer property(const std::string& name) const;

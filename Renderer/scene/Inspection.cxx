@@ -139,10 +139,10 @@ void addExample(const std::string& volume, const Json& segmentation, Json& repor
 
 /// A folder of masks is no input of a render, but its segmentation. nullopt: it has
 /// DICOM series, or most of its volume files are no masks.
-std::optional<Json> inspectMaskFolder(const RenderRequest& request) {
+std::optional<Json> inspectMaskFolder(const RenderRequest& request, const Input& input) {
   Json report = makeReport(request, "segmentation"), unused;
   const std::size_t files = listMaskFiles(request.input).size();
-  if (files == 0 || tryRead([&] { return findDicomSeries(request.input); }, unused))
+  if (files == 0 || tryRead([&] { return input.dicom() != nullptr; }, unused))
     return std::nullopt;
   const Json folder =
       inspectSegmentationFile(request.input, nullptr, request.labels, report["warnings"]);
@@ -153,29 +153,55 @@ std::optional<Json> inspectMaskFolder(const RenderRequest& request) {
   return report;
 }
 
+Json seriesJson(const DicomFolder& dicom) {
+  Json all = Json::array();
+  for (const DicomSeries& series : dicom.series)
+    all.push_back({{"uid", nullIfEmpty(series.uid)},
+                   {"number", nullIfEmpty(series.number)},
+                   {"description", nullIfEmpty(series.description)},
+                   {"modality", nullIfEmpty(series.modality)},
+                   {"part", nullIfEmpty(series.part)},
+                   {"frames", series.frames.size()},
+                   {"files", series.files().size()}});
+  return all;
+}
+
+/// Adds the segmentations in the folder that refer to the series. `grid`: of its volume.
+void addSegmentationsOf(const DicomFolder& dicom, const RenderRequest& request, const Grid& grid,
+                        Json& report) {
+  const DicomSeries series =
+      chooseSeries(dicom.series, request.volume.name, request.input.string());
+  for (const auto& file : dicom.segmentationsOf(series)) {
+    const Json one = inspectSegmentationFile(file, &grid, request.labels, report["warnings"]);
+    addExample(request.input.string(), one, report);
+    report["segmentations"].push_back(one);
+  }
+}
+
 Json inspectFiles(const RenderRequest& request, const Input& input) {
-  const bool isDicom = isFolder(request.input);
-  if (isDicom)
-    if (auto masks = inspectMaskFolder(request))
+  if (isFolder(request.input))
+    if (auto masks = inspectMaskFolder(request, input))
       return std::move(*masks);
-  Json report = makeReport(request, isDicom ? "dicom" : "volume");
-  if (isDicom)
-    for (const DicomSeries& series : findDicomSeries(request.input))
-      report["series"].push_back({{"uid", series.uid},
-                                  {"number", nullIfEmpty(series.number)},
-                                  {"description", nullIfEmpty(series.description)},
-                                  {"modality", nullIfEmpty(series.modality)},
-                                  {"files", series.files.size()}});
+  Json unused;
+  const DicomFolder* const dicom =
+      isFolder(request.input)
+          ? input.dicom()
+          : tryRead([&] { return input.dicom(); }, unused).value_or(nullptr); // a segmentation
+  Json report = makeReport(request, dicom ? "dicom" : "volume");
+  if (dicom)
+    report["series"] = seriesJson(*dicom);
   const FileVolume volume = inspectVolume(request, input, report);
   Json& segmentations = report["segmentations"];
   const Grid* grid = volume.grid ? &*volume.grid : nullptr;
-  if (!isDicom && (!grid || volume.isLikelyLabelMap || hasSegmentationName(request.input))) {
+  if (!dicom && (!grid || volume.isLikelyLabelMap || hasSegmentationName(request.input))) {
     segmentations.push_back(
         inspectSegmentationFile(request.input, grid, request.labels, report["warnings"]));
     if (!grid && !segmentations.back()["problem"].is_null())
       throw *volume.failure;
     report["kind"] = "segmentation";
   }
+  if (dicom && !request.segmentation && grid)
+    addSegmentationsOf(*dicom, request, *grid, report);
   if (request.segmentation) {
     segmentations.push_back(
         inspectSegmentationFile(*request.segmentation, grid, request.labels, report["warnings"]));

@@ -24,7 +24,7 @@ namespace fenestra {
 ///     views [NODE + layout, technique, background {bottom, top}]
 ///     cameras [NODE + layout, POSE unless the node has a problem]
 ///     transforms [NODE + linear, toWorld (row-major, including all parent transforms)]
-///     series [uid, number, description, modality, files]
+///     series [uid, number, description, modality, part (like "echo 4.9 ms"), frames, files]
 ///     others {tag: count}
 ///     materials [name, kind, color (like a segment's material)]: the library
 ///     examples [volume, segmentation, focus]: renders, for the segmentations that are files

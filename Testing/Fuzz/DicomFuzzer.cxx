@@ -6,13 +6,15 @@
 
 FENESTRA_FUZZ(Dicom, input) {
   using namespace fenestra;
-  const DicomHeader header = [input] {
+  const std::vector<DicomHeader> headers = [input] {
     try {
-      return parseDicomHeader(input);
+      return parseDicomHeaders(input);
     } catch (const std::runtime_error&) { // as DicomReader does
       throw inputError("slice.dcm", "is not a valid reply");
     }
   }();
-  checkDicomPixels(fuzzing::writeInput(input, "slice.dcm"), header);
-  rescaleVoxels(header, std::string(imageBytes(header), '\x5a'));
+  for (const DicomHeader& header : headers) {
+    checkDicomPixels(fuzzing::writeInput(input, "slice.dcm"), header);
+    rescaleVoxels(header, std::string(imageBytes(header), '\x5a'));
+  }
 }

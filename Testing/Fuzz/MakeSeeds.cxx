@@ -4,6 +4,7 @@
 #include "TemporaryFolder.h"
 #include "WriteResults.h"
 #include "files/formats/ZipWriter.h"
+#include "files/medical/DicomFields.h"
 #include "io/Sandbox.h"
 
 #include <itkAffineTransform.h>
@@ -18,6 +19,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <map>
 
 namespace fenestra {
 namespace {
@@ -119,12 +121,21 @@ void makeReplies(const fs::path& corpus) {
   }
   save(corpus / "Transform", "composite", composite.bytes());
   for (const char* compressed : {"0", "1"}) {
-    ReplyWriter slice; // the fields of DicomReader.cxx, in its order
-    for (const char* text :
-         {"1", compressed,    "1",  "CT", "head", "1.2.3",  "7",  "1\\2\\3", "1\\0\\0\\0\\1\\0",
-          "1", "MONOCHROME2", "",   "8",  "8",    "0.5\\2", "16", "12",      "11",
-          "1", "-1024",       "0.5"})
-      slice.put(text);
+    const std::map<std::uint32_t, const char*> values = {
+        {0x00080060, "CT"},    {0x0008103e, "head"},        {0x0020000e, "1.2.3"},
+        {0x00200011, "7"},     {0x00200032, "1\\2\\3"},     {0x00200037, "1\\0\\0\\0\\1\\0"},
+        {0x00280002, "1"},     {0x00280004, "MONOCHROME2"}, {0x00280010, "8"},
+        {0x00280011, "8"},     {0x00280030, "0.5\\2"},      {0x00280100, "16"},
+        {0x00280101, "12"},    {0x00280102, "11"},          {0x00280103, "1"},
+        {0x00281052, "-1024"}, {0x00281053, "0.5"}};
+    ReplyWriter slice;
+    for (const char* flag : {"1", compressed, "1"})
+      slice.put(flag);
+    for (const DicomField& field : dicomFields) {
+      const auto value = values.find(field.isInSequenceOnly ? 0 : field.tag);
+      slice.put(value == values.end() ? "" : value->second);
+    }
+    slice.put(std::vector<double>{0.0}); // frames
     save(corpus / "Dicom", *compressed == '0' ? "native" : "compressed", slice.bytes());
   }
 }

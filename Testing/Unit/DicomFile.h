@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -93,6 +94,8 @@ private:
     if (isBig() && (element.vr == "US" || element.vr == "OW"))
       for (std::size_t i = 0; i + 1 < value.size(); i += 2)
         std::swap(value[i], value[i + 1]);
+    if (isBig() && (element.vr == "UL" || element.vr == "FD"))
+      std::ranges::reverse(value); // of one number
     return value;
   }
 

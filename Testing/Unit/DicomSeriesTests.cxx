@@ -100,7 +100,8 @@ void writeStack(const TemporaryFolder& folder, SliceFile slice, int count, doubl
 }
 
 Volume readSingleSeries(const Path& folder) {
-  return readDicomVolume(chooseSeries(findDicomSeries(folder), std::nullopt, folder.string()));
+  return readDicomVolume(
+      chooseSeries(findDicomSeries(folder).series, std::nullopt, folder.string()));
 }
 
 double getVoxel(const Volume& volume, std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -217,7 +218,7 @@ TEST(DicomSeries, SelectorChoosesAmongSeries) {
   writeStack(folder, {.uid = "1.2.4", .number = "12", .description = "neck"}, 3, 1);
   writeStack(folder, {.uid = "1.2.5", .number = "8", .description = "neck"}, 4, 1);
   writeStack(folder, {.uid = "1.2.6", .number = "9", .modality = "SEG"}, 1, 1); // no volume
-  const auto series = findDicomSeries(folder.path());
+  const auto series = findDicomSeries(folder.path()).series;
   ASSERT_EQ(series.size(), 3u);
   EXPECT_EQ(series[0].number, "7");
   EXPECT_EQ(series[1].number, "8");
@@ -226,11 +227,11 @@ TEST(DicomSeries, SelectorChoosesAmongSeries) {
   const auto choose = [&](const std::optional<std::string>& selector) {
     return chooseSeries(series, selector, folder.path().string());
   };
-  EXPECT_EQ(choose("1.2.4").files.size(), 3u);
-  EXPECT_EQ(choose("8").files.size(), 4u);
-  EXPECT_EQ(choose("head").files.size(), 2u);
+  EXPECT_EQ(choose("1.2.4").files().size(), 3u);
+  EXPECT_EQ(choose("8").files().size(), 4u);
+  EXPECT_EQ(choose("head").files().size(), 2u);
   fenestra::expectRefused(
-      folder.path(), "ambiguous-volume | 3 DICOM | number 7 \"head\" CT 1.2.3 (2 files); number 8",
+      folder.path(), "ambiguous-volume | 3 DICOM | number 7 \"head\" CT 1.2.3 (2 slices); number 8",
       [&] { choose(std::nullopt); });
   fenestra::expectRefused(folder.path(), "ambiguous-name | \"neck\" | number 8",
                           [&] { choose("neck"); });
@@ -238,7 +239,7 @@ TEST(DicomSeries, SelectorChoosesAmongSeries) {
                           [&] { choose("foot"); });
 }
 
-TEST(DicomSeries, SearchesSubfoldersOfAFolderWithoutFiles) {
+TEST(DicomSeries, SearchesSubfolders) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder / "a");
   std::filesystem::create_directories(folder / "b");
@@ -246,8 +247,7 @@ TEST(DicomSeries, SearchesSubfoldersOfAFolderWithoutFiles) {
   write(folder / "b/2.dcm", {.position = {0, 0, 4}});
   EXPECT_EQ(readSingleSeries(folder.path()).grid.size.z(), 2);
   folder.write("readme", "");
-  fenestra::expectRefused(folder.path(), "unsupported-file",
-                          [&] { findDicomSeries(folder.path()); });
+  EXPECT_EQ(readSingleSeries(folder.path()).grid.size.z(), 2);
 }
 
 void expectRefused(const Path& subject, const Path& folder, const std::string& expected) {
@@ -260,18 +260,11 @@ void writeDepths(const TemporaryFolder& folder, const std::vector<double>& depth
     write(folder / (std::to_string(i) + ".dcm"), {.position = {0, 0, depths[i]}});
 }
 
-TEST(DicomSeries, RejectsMissingAndRepeatedSlices) {
-  const TemporaryFolder gap, repeated, drift, sideways;
-  writeDepths(gap, {0, 2, 4, 8, 10});
-  expectRefused(gap / "2.dcm", gap.path(),
-                "invalid-field: ImagePositionPatient | 4 mm | 3.dcm | 2 mm");
-  writeDepths(repeated, {0, 2, 4, 2});
-  expectRefused(repeated / "1.dcm", repeated.path(), "invalid-field: ImagePositionPatient | 3.dcm");
-  writeDepths(drift, {0, 2, 4, 6, 8.9, 11.8, 14.7, 17.6});
-  expectRefused(drift / "3.dcm", drift.path(), "invalid-field: ImagePositionPatient");
+TEST(DicomSeries, RejectsSlicesBesideTheOthers) {
+  const TemporaryFolder folder;
   for (int i = 0; i < 3; ++i)
-    write(sideways / (std::to_string(i) + ".dcm"), {.position = Vec3(i == 1 ? 0.6 : 0, 0, i)});
-  expectRefused(sideways / "1.dcm", sideways.path(), "invalid-field: ImagePositionPatient");
+    write(folder / (std::to_string(i) + ".dcm"), {.position = Vec3(i == 1 ? 0.6 : 0, 0, i)});
+  expectRefused(folder / "1.dcm", folder.path(), "invalid-field: ImagePositionPatient");
 }
 
 TEST(DicomSeries, WarnsOfUnevenSpacing) {
@@ -284,17 +277,6 @@ TEST(DicomSeries, WarnsOfUnevenSpacing) {
   EXPECT_NEAR(volume.grid.spacing().z(), 2.0, 1e-12);
   writeDepths(even, {0, 2.01, 4, 6});
   EXPECT_TRUE(readSingleSeries(even.path()).warnings.empty());
-}
-
-TEST(DicomSeries, RejectsSlicesOfDifferentGeometry) {
-  const TemporaryFolder rotated, spaced;
-  writeDepths(rotated, {0, 1});
-  write(rotated / "2.dcm", {.position = {0, 0, 2}, .axes = makeObliqueAxes()});
-  expectRefused(rotated / "2.dcm", rotated.path(),
-                "invalid-field: ImageOrientationPatient | 0.dcm");
-  writeDepths(spaced, {0, 1});
-  write(spaced / "2.dcm", {.position = {0, 0, 2}, .rowSpacing = 2.1});
-  expectRefused(spaced / "2.dcm", spaced.path(), "invalid-field: PixelSpacing");
 }
 
 /// Overwrites the start of an element's value in a file's bytes. The element has no explicit VR.

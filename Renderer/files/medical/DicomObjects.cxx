@@ -1,13 +1,12 @@
 #include "files/medical/DicomObjects.h"
 
 #include "base/Error.h"
-#include "files/medical/DicomReader.h"
+#include "files/medical/DicomDataSet.h"
 #include "files/medical/DicomText.h"
 #include "io/MessageText.h"
 
 #include <gdcmPixmap.h>
 #include <gdcmReader.h>
-#include <gdcmSequenceOfItems.h>
 
 #include <cmath>
 #include <cstring>
@@ -23,59 +22,17 @@ using gdcm::Tag;
 /// First word of the child's description.
 constexpr std::string_view segmentationKind = "segmentation", structureSetKind = "structure set";
 
-// ---- in the child process: elements of a data set
-
-std::string getBytes(const DataSet& data, const Tag& tag) {
-  const gdcm::ByteValue* value =
-      data.FindDataElement(tag) ? data.GetDataElement(tag).GetByteValue() : nullptr;
-  return value ? std::string(value->GetPointer(), value->GetLength()) : std::string();
-}
-
-std::string getText(const DataSet& data, const Tag& tag) {
-  return std::string(trim(getBytes(data, tag), std::string_view(" \0", 2)));
-}
-
-/// Values of decimal strings (DS) or integer strings (IS).
-std::vector<double> getDecimals(const DataSet& data, const Tag& tag) {
-  return parseDecimals(getText(data, tag));
-}
-
-/// Values of 16 bits without sign (US).
-std::vector<double> getShorts(const DataSet& data, const Tag& tag) {
-  const std::string bytes = getBytes(data, tag);
-  std::vector<std::uint16_t> values(bytes.size() / sizeof(std::uint16_t));
-  if (!values.empty()) // else its pointer may be null
-    std::memcpy(values.data(), bytes.data(), values.size() * sizeof(std::uint16_t));
-  return {values.begin(), values.end()};
-}
-
-/// Data sets of a sequence's items; they belong to the sequence.
-class Items {
-public:
-  Items(const DataSet& data, const Tag& tag) {
-    if (data.FindDataElement(tag))
-      m_sequence = data.GetDataElement(tag).GetValueAsSQ();
-  }
-  std::size_t size() const { return m_sequence ? m_sequence->GetNumberOfItems() : 0; }
-  const DataSet& operator[](std::size_t i) const {
-    return m_sequence->GetItem(i + 1).GetNestedDataSet(); // GDCM counts from 1
-  }
-
-private:
-  gdcm::SmartPointer<gdcm::SequenceOfItems> m_sequence;
-};
+// ---- in the child process: segmentations
 
 /// Code of the first item of a code sequence, like "SCT^39607008"; empty: missing.
 std::string getCode(const DataSet& data, const Tag& tag) {
-  const Items codes(data, tag);
+  const DicomItems codes(data, tag);
   const std::string value = codes.size() > 0 ? getText(codes[0], {0x0008, 0x0100}) : "";
   return value.empty() ? value : concat(getText(codes[0], {0x0008, 0x0102}), '^', value);
 }
 
-// ---- in the child process: segmentations
-
 void describeSegments(const DataSet& data, ReplyWriter& reply) {
-  const Items segments(data, {0x0062, 0x0002});
+  const DicomItems segments(data, {0x0062, 0x0002});
   reply.put(std::vector{static_cast<double>(segments.size())});
   for (std::size_t i = 0; i < segments.size(); ++i) {
     const DataSet& segment = segments[i];
@@ -91,26 +48,26 @@ void describeSegments(const DataSet& data, ReplyWriter& reply) {
 /// Functional groups of one frame: its own, else those that all frames share.
 class FunctionalGroups {
 public:
-  FunctionalGroups(const DataSet& own, const Items& shared) : m_own(own), m_shared(shared) {}
+  FunctionalGroups(const DataSet& own, const DicomItems& shared) : m_own(own), m_shared(shared) {}
 
   /// get(item, tag) of the first item of a group's sequence.
   template <typename Get>
   auto find(const Tag& sequence, const Tag& tag, const Get& get) const {
-    if (const Items group(m_own, sequence); group.size() > 0)
+    if (const DicomItems group(m_own, sequence); group.size() > 0)
       return get(group[0], tag);
     if (m_shared.size() > 0)
-      if (const Items group(m_shared[0], sequence); group.size() > 0)
+      if (const DicomItems group(m_shared[0], sequence); group.size() > 0)
         return get(group[0], tag);
     return get(DataSet(), tag);
   }
 
 private:
   const DataSet& m_own;
-  const Items& m_shared;
+  const DicomItems& m_shared;
 };
 
 void describeFrames(const DataSet& data, ReplyWriter& reply) {
-  const Items shared(data, {0x5200, 0x9229}), frames(data, {0x5200, 0x9230});
+  const DicomItems shared(data, {0x5200, 0x9229}), frames(data, {0x5200, 0x9230});
   reply.put(std::vector{static_cast<double>(frames.size())});
   const Tag measures(0x0028, 0x9110);
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -136,7 +93,7 @@ void describeSegmentation(const DataSet& data, ReplyWriter& reply) {
 // ---- in the child process: structure sets
 
 void describeContours(const DataSet& roi, ReplyWriter& reply) {
-  const Items contours(roi, {0x3006, 0x0040});
+  const DicomItems contours(roi, {0x3006, 0x0040});
   std::vector<std::size_t> closed;
   for (std::size_t i = 0; i < contours.size(); ++i)
     if (getText(contours[i], {0x3006, 0x0042}).starts_with("CLOSED_PLANAR")) // or with a suffix
@@ -147,7 +104,7 @@ void describeContours(const DataSet& roi, ReplyWriter& reply) {
 }
 
 void describeStructureSet(const DataSet& data, ReplyWriter& reply) {
-  const Items names(data, {0x3006, 0x0020}), rois(data, {0x3006, 0x0039});
+  const DicomItems names(data, {0x3006, 0x0020}), rois(data, {0x3006, 0x0039});
   reply.put(std::vector{static_cast<double>(names.size())});
   for (std::size_t i = 0; i < names.size(); ++i) {
     reply.put(getDecimals(names[i], {0x3006, 0x0022}));
@@ -164,11 +121,6 @@ void describeStructureSet(const DataSet& data, ReplyWriter& reply) {
 // ---- in the child process: requests
 
 const Tag pixelData(0x7fe0, 0x0010);
-
-bool isDeflated(const gdcm::File& file) {
-  return file.GetHeader().GetDataSetTransferSyntax() ==
-         gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
-}
 
 std::string describeObject(const std::string& path) {
   gdcm::Reader partial, complete;

@@ -1,35 +1,30 @@
 #include "files/medical/DicomReader.h"
 
 #include "base/Error.h"
-
-#include <gdcmMediaStorage.h>
-#include <gdcmPixmapReader.h>
-#include <gdcmReader.h>
-#include <gdcmStringFilter.h>
+#include "files/medical/DicomFields.h"
+#include "files/medical/DicomText.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <set>
-#include <variant>
 
 namespace fenestra {
 namespace {
 
 using Path = std::filesystem::path;
-using gdcm::Tag;
 
-constexpr std::uint64_t maxHeaderBytes = 1 << 20;
 constexpr std::string_view padding(" \0", 2); ///< of values, to an even length
 
-// ---- header fields, in the order in which the child sends them
+// ---- header fields
 
 void parseField(const std::string& text, std::string& member) {
-  member = text;
+  if (!text.empty())
+    member = text;
 }
 void parseField(const std::string& text, std::vector<double>& member) {
-  member = parseDecimals(text);
+  if (!text.empty())
+    member = parseDecimals(text);
 }
 /// Accepts any number. A missing field leaves the default; any other text gives NaN.
 void parseField(const std::string& text, double& member) {
@@ -43,96 +38,34 @@ void parseField(const std::string& text, unsigned& member) {
   parseField(text, number);
   member = number >= 0.0 && number <= 0x1p31 ? static_cast<unsigned>(number) : 0;
 }
-
-struct HeaderField {
-  std::uint16_t group, element;
-  std::variant<std::string DicomHeader::*, std::vector<double> DicomHeader::*,
-               double DicomHeader::*, unsigned DicomHeader::*>
-      member;
-
-  Tag tag() const { return {group, element}; }
-};
-
-constexpr std::array dicomFields = {
-    HeaderField{0x0008, 0x0060, &DicomHeader::modality},
-    HeaderField{0x0008, 0x103e, &DicomHeader::seriesDescription},
-    HeaderField{0x0018, 0x0010, &DicomHeader::contrastAgent},
-    HeaderField{0x0020, 0x000e, &DicomHeader::seriesUid},
-    HeaderField{0x0020, 0x0011, &DicomHeader::seriesNumber},
-    HeaderField{0x0020, 0x0032, &DicomHeader::position},
-    HeaderField{0x0020, 0x0037, &DicomHeader::orientation},
-    HeaderField{0x0028, 0x0002, &DicomHeader::samples},
-    HeaderField{0x0028, 0x0004, &DicomHeader::photometric},
-    HeaderField{0x0028, 0x0008, &DicomHeader::frames},
-    HeaderField{0x0028, 0x0010, &DicomHeader::rows},
-    HeaderField{0x0028, 0x0011, &DicomHeader::columns},
-    HeaderField{0x0028, 0x0030, &DicomHeader::pixelSpacing},
-    HeaderField{0x0028, 0x0100, &DicomHeader::bits},
-    HeaderField{0x0028, 0x0101, &DicomHeader::bitsStored},
-    HeaderField{0x0028, 0x0102, &DicomHeader::highBit},
-    HeaderField{0x0028, 0x0103, &DicomHeader::isSigned},
-    HeaderField{0x0028, 0x1052, &DicomHeader::intercept},
-    HeaderField{0x0028, 0x1053, &DicomHeader::slope},
-};
-
-// ---- in the child process
-
-std::string makeHeaderReply(const std::string& path) {
-  if (!isDicomFile(path))
-    return {};
-  std::set<Tag> tags = {Tag(0x0008, 0x0016)}; // SOPClassUID
-  for (const HeaderField& field : dicomFields)
-    tags.insert(field.tag());
-  gdcm::Reader reader;
-  reader.SetFileName(path.c_str());
-  const bool read = reader.ReadSelectedTags(tags);
-  const gdcm::File& file = reader.GetFile();
-  const gdcm::TransferSyntax& syntax = file.GetHeader().GetDataSetTransferSyntax();
-  gdcm::MediaStorage kind;
-  kind.SetFromFile(file);
-  const auto flag = [](bool value) { return value ? "1" : "0"; };
-  ReplyWriter reply;
-  reply.put(flag(gdcm::MediaStorage::IsImage(kind)));
-  reply.put(flag(syntax.IsEncapsulated()));
-  reply.put(flag(read && syntax != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian));
-  gdcm::StringFilter texts;
-  texts.SetFile(file);
-  for (const HeaderField& field : dicomFields)
-    reply.put(texts.ToString(field.tag()));
-  return reply.bytes();
+/// Accepts the first of several numbers. Any other text leaves the default.
+void parseField(const std::string& text, std::optional<double>& member) {
+  if (const std::vector<double> numbers = parseDecimals(text); !numbers.empty())
+    member = numbers[0];
 }
 
-/// True if the file contains all `bytes` of the voxels. GDCM silently pads truncated data.
-bool hasAllVoxels(const std::string& path, std::uint64_t bytes) {
-  const Tag pixelData(0x7fe0, 0x0010);
-  gdcm::Reader reader;
-  reader.SetFileName(path.c_str());
-  return reader.ReadUpToTag(pixelData, {pixelData}) &&
-         reader.GetStreamCurrentPosition() + bytes <= std::filesystem::file_size(path);
+void takeField(ReplyReader& reply, const DicomField& field, DicomHeader& header) {
+  const std::string text(trim(reply.text(), padding));
+  std::visit([&](auto member) { parseField(text, header.*member); }, field.member);
 }
 
-std::string makeVoxelsReply(const std::string& path) {
-  gdcm::PixmapReader reader;
-  reader.SetFileName(path.c_str());
-  if (!reader.Read())
-    return {};
-  const gdcm::Pixmap& image = reader.GetPixmap();
-  const gdcm::SequenceOfFragments* fragments = image.GetDataElement().GetSequenceOfFragments();
-  std::string voxels(image.GetBufferLength(), '\0');
-  const bool isComplete =
-      hasAllVoxels(path, fragments ? fragments->ComputeByteLength() : voxels.size());
-  return isComplete && image.GetBuffer(voxels.data()) ? voxels : std::string();
+/// Places frames without positions of their own along the normal, by the spacing that the file
+/// states, in the order of the frames or of nuclear medicine's slices.
+void placeFrames(std::vector<DicomHeader>& frames) {
+  const DicomHeader first = frames.front();
+  const std::optional<DicomAxes> axes = findAxes(first.orientation);
+  const std::vector<double>& step =
+      first.sliceSpacing.empty() ? first.sliceThickness : first.sliceSpacing;
+  if (!axes || first.position.size() != 3 || step.size() != 1 || step[0] == 0.0)
+    return;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const bool hasSlice = first.sliceVector.size() == frames.size();
+    const double slice = hasSlice ? first.sliceVector[i] - 1.0 : static_cast<double>(i);
+    for (int axis = 0; axis < 3; ++axis)
+      frames[i].position[static_cast<std::size_t>(axis)] += slice * step[0] * axes->normal()[axis];
+    frames[i].isPlacedByThickness = first.sliceSpacing.empty();
+  }
 }
-
-/// First character of a request; the path follows.
-constexpr char headerRequest = 'h', voxelsRequest = 'v';
-
-std::string handleDicomRequest(const std::string& request) {
-  const std::string path = request.substr(1);
-  return request[0] == headerRequest ? makeHeaderReply(path) : makeVoxelsReply(path);
-}
-
-const SandboxJob dicomJob("dicom", handleDicomRequest);
 
 // ---- voxels
 
@@ -166,42 +99,80 @@ std::vector<double> parseDecimals(std::string text) {
   return parseNumbers(text).value_or(std::vector<double>{});
 }
 
-DicomAxes parseAxes(const std::vector<double>& o, const std::string& source) {
+std::optional<DicomAxes> findAxes(const std::vector<double>& o) {
   constexpr double tolerance = 1e-2; // real files round their direction cosines
-  if (o.size() == 6) {
-    const Vec3 row(o[0], o[1], o[2]), column(o[3], o[4], o[5]);
-    if (std::abs(row.norm() - 1.0) <= tolerance && std::abs(column.norm() - 1.0) <= tolerance &&
-        std::abs(row.dot(column)) <= tolerance)
-      return {row.normalized(), column.normalized()};
-  }
+  if (o.size() != 6)
+    return std::nullopt;
+  const Vec3 row(o[0], o[1], o[2]), column(o[3], o[4], o[5]);
+  if (std::abs(row.norm() - 1.0) <= tolerance && std::abs(column.norm() - 1.0) <= tolerance &&
+      std::abs(row.dot(column)) <= tolerance)
+    return DicomAxes{row.normalized(), column.normalized()};
+  return std::nullopt;
+}
+
+DicomAxes parseAxes(const std::vector<double>& orientation, const std::string& source) {
+  if (const auto axes = findAxes(orientation))
+    return *axes;
   throw fieldError(source, "ImageOrientationPatient",
                    "must be two orthogonal directions; export the series again");
 }
 
-DicomReader::DicomReader() : m_reader(dicomJob) {}
+bool isDicomSegmentation(const DicomHeader& header) {
+  return header.modality == "SEG" || header.sopClass == "1.2.840.10008.5.1.4.1.1.66.4" ||
+         header.sopClass == "1.2.840.10008.5.1.4.1.1.66.7" ||
+         header.sopClass == "1.2.840.10008.5.1.4.1.1.481.3";
+}
 
-DicomHeader parseDicomHeader(std::string_view reply) {
+bool isImage(const DicomHeader& header) {
+  return (header.isImageObject || header.rows > 0) && !isDicomSegmentation(header) &&
+         header.modality != "RTDOSE";
+}
+
+DicomReader::DicomReader() : m_reader(dicomJob), m_frameReader(dicomFramesJob) {}
+
+std::vector<DicomHeader> parseDicomHeaders(std::string_view reply) {
+  constexpr double maxFrames = 1 << 16;
   ReplyReader fields(reply);
   DicomHeader header;
   for (bool* flag : {&header.isImageObject, &header.isCompressed, &header.isComplete})
     *flag = fields.text() == "1";
-  for (const HeaderField& field : dicomFields)
-    std::visit(
-        [&](auto member) { parseField(std::string(trim(fields.text(), padding)), header.*member); },
-        field.member);
-  return header;
+  for (const DicomField& field : dicomFields)
+    takeField(fields, field, header);
+  header.frames = std::max(1U, header.frames);
+  header.seriesDescription = toUtf8(header.seriesDescription, header.characterSet);
+  const std::vector<double> groups = fields.numbers();
+  if (groups.size() != 1 || !(groups[0] >= 0.0 && groups[0] <= maxFrames))
+    throw std::runtime_error("reply has an invalid number of frames");
+  const auto count = static_cast<unsigned>(groups[0]);
+  if (header.frames == 1 || !isImage(header))
+    return {header};
+  if (header.frames > maxFrames || (count != 0 && count != header.frames)) {
+    header.isComplete = false;
+    return {header};
+  }
+  std::vector<DicomHeader> frames(header.frames, header);
+  for (unsigned i = 0; i < header.frames; ++i) {
+    frames[i].frame = i;
+    frames[i].instance = i;
+    for (const DicomField& field : dicomFields)
+      if (count != 0 && field.sequence != 0)
+        takeField(fields, field, frames[i]);
+  }
+  if (count == 0)
+    placeFrames(frames);
+  return frames;
 }
 
-std::optional<DicomHeader> DicomReader::readHeader(const Path& path) {
-  std::error_code unknown;
-  if (!std::filesystem::is_regular_file(path, unknown))
-    return std::nullopt;
-  const auto reply = m_reader.request(headerRequest + path.string(), maxHeaderBytes);
+std::vector<DicomHeader> DicomReader::readHeaders(const Path& path) {
+  constexpr std::uint64_t maxBytes = 1 << 27;
+  if (!isDicomFile(path))
+    return {};
+  const auto reply = m_reader.request(dicomHeaderRequest + path.string(), maxBytes);
   if (reply && reply->empty())
-    return std::nullopt;
+    return {};
   try {
     if (reply)
-      return parseDicomHeader(*reply);
+      return parseDicomHeaders(*reply);
   } catch (const std::runtime_error&) { // malformed reply
   }
   throw inputError(ErrorCode::unreadableFile, concat(path, ": DICOM header"),
@@ -210,21 +181,25 @@ std::optional<DicomHeader> DicomReader::readHeader(const Path& path) {
 
 std::string DicomReader::readVoxels(const Path& path, const DicomHeader& h) {
   const std::uint64_t size = imageBytes(h);
-  auto reply = m_reader.request(voxelsRequest + path.string(), size);
+  const std::uint32_t frame = h.frame;
+  std::string request(1, dicomVoxelsRequest);
+  request.append(reinterpret_cast<const char*>(&frame), sizeof frame).append(path.string());
+  auto reply = (h.frames > 1 ? m_frameReader : m_reader).request(request, size);
   if (reply && reply->size() == size)
     return std::move(*reply);
   if (h.isCompressed)
     throw inputError(ErrorCode::damagedFile, concat(path, ": PixelData"),
                      "cannot be decoded; export the series without compression");
   throw inputError(ErrorCode::damagedFile, concat(path, ": PixelData"),
-                   "is damaged, truncated or deflated; export the series again");
+                   "is damaged or truncated; export the series again");
 }
 
 void checkDicomPixels(const Path& path, const DicomHeader& h) {
   const auto refuse = [&](const char* field, const char* what) {
     throw fieldError(path, field, what);
   };
-  if (h.rows == 0 || h.columns == 0)
+  constexpr unsigned maxSide = 65535;
+  if (h.rows == 0 || h.columns == 0 || h.rows > maxSide || h.columns > maxSide)
     refuse("Rows or Columns", "is missing; export the series again");
   const bool isSupported = h.bits == 8 || h.bits == 16 || h.bits == 32;
   if (!isSupported || h.bitsStored == 0 || h.highBit >= h.bits || h.bitsStored > h.highBit + 1 ||
@@ -238,7 +213,7 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
   const std::uint64_t stored = std::filesystem::file_size(path);
   const std::uint64_t maxBytes =
       h.isCompressed ? std::max(emptyImageBytes, stored * ratio) : stored;
-  if (imageBytes(h) > maxBytes)
+  if (imageBytes(h) > maxBytes / h.frames)
     refuse("PixelData",
            "is shorter than Rows, Columns and BitsAllocated say; export the series again");
 }

@@ -1,12 +1,12 @@
 #include "files/medical/DicomSeries.h"
 
 #include "base/Error.h"
-#include "files/medical/DicomReader.h"
 #include "io/InputRegistry.h"
 #include "io/MessageText.h"
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
 namespace fenestra {
@@ -16,24 +16,83 @@ namespace fs = std::filesystem;
 using Path = fs::path;
 using Paths = std::vector<Path>;
 
-/// Files in the folder; if there are none, those in its subfolders. Registers them as inputs.
-Paths listCandidates(const Path& folder) {
-  auto [files, folders] = listFolder(folder);
-  if (files.empty())
+/// Files in a folder and its subfolders, which may be links.
+class FileTree {
+public:
+  /// Throws Error (input) if the folder cannot be read, or has too many files.
+  explicit FileTree(const Path& root) : m_root(root) { add(root, 0); }
+
+  const Paths& files() const { return m_files; }
+
+private:
+  void add(const Path& folder, int depth) {
+    constexpr int maxDepth = 16;
+    constexpr std::size_t maxFiles = 200'000;
+    const auto id = fileId(folder);
+    if (depth > maxDepth || (id && !m_visited.insert(*id).second))
+      return;
+    const auto [files, folders] = listFolder(folder);
+    m_files.insert(m_files.end(), files.begin(), files.end());
+    if (m_files.size() > maxFiles)
+      throw inputError(ErrorCode::limitExceeded, m_root, "folder has more than ", maxFiles,
+                       " files; give the folder of one study");
     for (const Path& subfolder : folders)
-      std::ranges::move(listFolder(subfolder).files, std::back_inserter(files));
+      add(subfolder, depth + 1);
+  }
+
+  const Path& m_root;
+  Paths m_files;
+  std::set<FileId> m_visited;
+};
+
+/// What the slices of one series have in common.
+std::string getSeriesKey(const DicomHeader& h) {
+  if (!h.seriesUid.empty())
+    return h.seriesUid;
+  return concat("\n", h.frameOfReference, '\n', h.rows, '\n', h.columns, '\n',
+                joinNumbers(h.orientation, "\\", 3), '\n', h.seriesNumber, '\n',
+                h.seriesDescription, '\n', h.modality);
+}
+
+/// `subject`: the folder in messages.
+DicomFolder groupFiles(const Paths& files, const std::string& subject) {
+  DicomReader reader;
+  DicomFolder folder;
+  std::map<std::string, DicomSlices> bySeries;
   for (const Path& file : files)
-    requireFile(file, "give only the folder");
-  return files;
+    for (DicomHeader& header : reader.readHeaders(file))
+      if (isDicomSegmentation(header))
+        folder.segmentations.push_back({file, std::move(header)});
+      else if (!header.isComplete || isImage(header))
+        bySeries[getSeriesKey(header)].push_back({file, std::move(header)});
+  for (auto& [key, slices] : bySeries)
+    std::ranges::move(splitSeries(std::move(slices), subject), std::back_inserter(folder.series));
+  const auto isVolume = [](const DicomSeries& series) { return series.isVolume; };
+  if (std::ranges::any_of(folder.series, isVolume))
+    std::erase_if(folder.series, std::not_fn(isVolume));
+  std::ranges::stable_sort(folder.series, {}, [](const DicomSeries& series) {
+    return std::tuple(series.number.size(), series.number, series.uid); // shorter first: numeric
+  });
+  return folder;
+}
+
+std::size_t countSlices(const DicomSeries& series) {
+  std::size_t count = 0;
+  for (const DicomSlices& frame : series.frames)
+    count += frame.size();
+  return count;
 }
 
 std::string describeSeries(const DicomSeries& series) {
   std::string text = series.number.empty() ? "" : "number " + sanitize(series.number) + " ";
+  if (!series.part.empty())
+    text += "\"" + sanitize(series.name()) + "\" ";
   if (!series.description.empty())
     text += "\"" + sanitize(series.description) + "\" ";
   text += series.modality.empty() ? "" : sanitize(series.modality) + " ";
-  const std::size_t count = series.files.size();
-  return concat(text, sanitize(series.uid), " (", count, count == 1 ? " file)" : " files)");
+  text += series.uid.empty() ? "" : sanitize(series.uid) + " ";
+  const std::size_t count = countSlices(series);
+  return concat(text, "(", count, count == 1 ? " slice)" : " slices)");
 }
 
 std::string formatSeries(const std::vector<DicomSeries>& series) {
@@ -41,50 +100,116 @@ std::string formatSeries(const std::vector<DicomSeries>& series) {
   return join(series, "; ", describeSeries, maxListed);
 }
 
+/// The only series, or the only one that is not a single slice.
+std::optional<DicomSeries> findOnlySeries(const std::vector<DicomSeries>& series,
+                                          const std::string& folder) {
+  if (series.size() == 1)
+    return series.front();
+  std::vector<DicomSeries> stacks;
+  std::ranges::copy_if(series, std::back_inserter(stacks),
+                       [](const DicomSeries& one) { return one.frames.front().size() > 1; });
+  if (stacks.size() != 1)
+    return std::nullopt;
+  stacks.front().warnings.push_back(
+      makeMessage(ErrorCode::omittedSlices, folder, "the only series of several slices is used, ",
+                  describeSeries(stacks.front()), "; ", series.size() - 1,
+                  series.size() == 2 ? " other is a single image" : " others are single images"));
+  return stacks.front();
+}
+
 } // namespace
 
-std::vector<DicomSeries> findDicomSeries(const Path& folder) {
-  DicomReader files;
-  std::map<std::string, DicomSeries> byUid;
-  for (const Path& file : listCandidates(folder)) {
-    const auto header = files.readHeader(file);
-    const bool isVolume = header && header->modality != "SEG"; // a segmentation has pixels, too
-    if (!isVolume || header->seriesUid.empty() || (header->isComplete && !isImage(*header)))
-      continue;
-    DicomSeries& series = byUid[header->seriesUid];
-    if (series.files.empty())
-      series = {
-          header->seriesUid, header->seriesNumber, header->seriesDescription, header->modality, {}};
-    series.files.push_back(file);
+Paths DicomSeries::files() const {
+  Paths all;
+  std::set<Path> known;
+  for (const DicomSlices& frame : frames)
+    for (const DicomSlice& slice : frame)
+      if (known.insert(slice.path).second)
+        all.push_back(slice.path);
+  return all;
+}
+
+std::string DicomSeries::name() const {
+  return concat(number, number.empty() || part.empty() ? "" : " ", part);
+}
+
+Paths DicomFolder::segmentationsOf(const DicomSeries& one) const {
+  const std::string& frameOfReference = one.frames.front().front().header.frameOfReference;
+  Paths found;
+  for (const DicomSegmentationFile& file : segmentations) {
+    const DicomHeader& h = file.header;
+    if (h.referencedSeries.empty() ? h.frameOfReference == frameOfReference
+                                   : h.referencedSeries == one.uid)
+      found.push_back(file.path);
   }
-  if (byUid.empty())
+  return found;
+}
+
+DicomFolder findDicomSeries(const Path& folder) {
+  const FileTree tree(folder);
+  for (const Path& file : tree.files())
+    requireFile(file, "give only the folder");
+  DicomFolder found = groupFiles(tree.files(), folder.string());
+  if (found.series.empty())
     throw inputError(ErrorCode::unsupportedFile, folder,
                      "folder has no DICOM image series; give one that does, or a volume file");
-  std::vector<DicomSeries> all;
-  for (auto& [uid, series] : byUid)
-    all.push_back(std::move(series));
-  std::ranges::sort(all, {}, [](const DicomSeries& series) { // shorter first: numeric order
-    return std::tuple(series.number.size(), series.number, series.uid);
+  return found;
+}
+
+DicomFolder findSeriesOfFile(const Path& file) {
+  requireFile(file, "give only the folder");
+  const std::vector<DicomHeader> headers = DicomReader().readHeaders(file);
+  if (!headers.empty() && isDicomSegmentation(headers.front()))
+    throw inputError(ErrorCode::segmentationAsVolume, file, "is a segmentation");
+  if (headers.empty() || (headers.front().isComplete && !isImage(headers.front())))
+    throw inputError(ErrorCode::unsupportedFile, file,
+                     "is a DICOM file without an image; give a "
+                     "volume file or a DICOM series");
+  const Path parent = file.has_parent_path() ? file.parent_path() : Path(".");
+  const bool isAlone = headers.size() > 1;
+  const Paths files = isAlone ? Paths{file} : listFolder(parent).files;
+  for (const Path& one : files)
+    requireFile(one, "give only the folder");
+  DicomFolder found = groupFiles(files, (isAlone ? file : parent).string());
+  if (isAlone)
+    return found;
+  std::erase_if(found.series, [&](const DicomSeries& series) {
+    return std::ranges::none_of(series.files(), [&](const Path& other) {
+      std::error_code failed;
+      return fs::equivalent(file, other, failed);
+    });
   });
-  return all;
+  if (found.series.empty()) // left out of its series
+    found.series = splitSeries({{file, headers.front()}}, file.string());
+  for (DicomSeries& series : found.series)
+    if (const std::size_t count = series.files().size(); count > 1)
+      series.warnings.push_back(makeMessage(ErrorCode::assumedGeometry, file, "is one of ", count,
+                                            " slices of its series in this folder; all are read"));
+  return found;
 }
 
 DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
                          const std::optional<std::string>& selector, const std::string& folder) {
-  if (!selector && series.size() == 1)
-    return series.front();
-  if (!selector)
-    throw inputError(ErrorCode::ambiguousVolume, folder, "has ", series.size(),
-                     " DICOM series: ", formatSeries(series));
-  for (const auto field : {&DicomSeries::uid, &DicomSeries::number, &DicomSeries::description}) {
+  if (!selector) {
+    if (const auto only = findOnlySeries(series, folder))
+      return *only;
+    throw inputError(ErrorCode::ambiguousVolume, folder, "has ", series.size(), " DICOM ",
+                     series.front().part.empty() ? "series: " : "volumes: ", formatSeries(series));
+  }
+  const auto matches = [&](const DicomSeries& one, int field) {
+    const std::string fields[] = {one.uid, one.number, one.description, one.part, one.name()};
+    return !selector->empty() && fields[field] == *selector;
+  };
+  for (const int field : {0, 1, 2, 3, 4}) {
     std::vector<DicomSeries> found;
     std::ranges::copy_if(series, std::back_inserter(found),
-                         [&](const DicomSeries& one) { return one.*field == *selector; });
+                         [&](const DicomSeries& one) { return matches(one, field); });
     if (found.size() == 1)
       return found.front();
     if (found.size() > 1)
       throw inputError(ErrorCode::ambiguousName, folder, "\"", sanitize(*selector),
-                       "\" matches several: ", formatSeries(found), "; choose one by its uid");
+                       "\" matches several: ", formatSeries(found), "; choose one by its ",
+                       found.front().part.empty() ? "uid" : "quoted name");
   }
   throw inputError(ErrorCode::unknownName, folder, "\"", sanitize(*selector),
                    "\" matches no DICOM series; it has ", formatSeries(series));

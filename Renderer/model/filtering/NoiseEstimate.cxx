@@ -148,6 +148,7 @@ double estimateNoise(const Volume& volume, Modality modality) {
   case Modality::ct:
     return std::min(findMode(std::move(deviations)), 1.5 * estimateDeviation(std::move(residuals)));
   case Modality::mr:
+  case Modality::pt:
     return 1.2 * estimateDeviation(std::move(residuals));
   case Modality::us:
     return findMode(std::move(deviations));

@@ -17,8 +17,9 @@
 
 namespace fenestra {
 
-/// Kind of scan. CT scalars are Hounsfield units; MR and ultrasound have no standard unit.
-enum class Modality { ct, mr, us };
+/// Kind of scan. CT scalars are Hounsfield units, those of PET standardized uptake values (SUV,
+/// g/ml) if the file allows it; MR and ultrasound have no standard unit.
+enum class Modality { ct, mr, us, pt };
 
 /// Storage types, x fastest. Readers convert every file type to the smallest of these that holds
 /// all its values (64-bit and double values that do not fit are rounded to float).

@@ -1,0 +1,161 @@
+// Multi-frame DICOM files, and values of PET.
+
+#include "Approx.h"
+#include "DicomSliceFiles.h"
+#include "files/medical/StandardUptake.h"
+
+namespace fenestra::DicomFramesTests {
+namespace {
+
+using namespace dicomSlices;
+
+TEST(DicomFrames, FramesOfAMultiFrameFileAreSlices) {
+  const Mat3 axes = (makeRotation(0.4, Vec3(1, 2, 3).normalized())).linear();
+  const Vec3 origin(10, -20, 30);
+  for (const Syntax syntax : {Syntax::explicitLittle, Syntax::implicitLittle, Syntax::explicitBig,
+                              Syntax::deflated, Syntax::rle})
+    for (const bool hasLengths : {true, false}) {
+      const TemporaryFolder folder;
+      folder.write("frames", makeFrames(
+                                 5, // against the normal
+                                 [&](unsigned i) {
+                                   return Item{makePosition(origin + axes * Vec3(0, 0, -2.5 * i))};
+                                 },
+                                 {makeShared(axes)}, syntax, hasLengths));
+      const Volume volume = read(folder.path());
+      EXPECT_EQ(getScalars(volume), (std::vector{4.0, 3.0, 2.0, 1.0, 0.0}));
+      EXPECT_TRUE(volume.warnings.empty());
+      for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(2, 1, 0), Vec3(0, 1, 4)}) {
+        const Vec3 lps =
+            origin + axes * Vec3(0.5 * corner[0], 2.0 * corner[1], 2.5 * (corner[2] - 4));
+        EXPECT_LT((volume.grid.indexToWorld * corner - Vec3(-lps[0], -lps[1], lps[2])).norm(),
+                  1e-4);
+      }
+    }
+}
+
+TEST(DicomFrames, FramesCanDifferInEchoAndTime) {
+  const TemporaryFolder folder;
+  folder.write(
+      "frames",
+      makeFrames(12,
+                 [](unsigned i) {
+                   const std::uint32_t time = i / 6;
+                   return Item{
+                       makeSequence(0x00189114, {{makeDouble(0x00189082, i % 2 ? 30.0 : 10.0)}}),
+                       makeSequence(0x00209111,
+                                    {{{0x00209128, "UL",
+                                       std::string(reinterpret_cast<const char*>(&time), 4)}}}),
+                       makePosition(Vec3(0, 0, 2.0 * (i / 2 % 3)))};
+                 },
+                 {makeShared(Mat3::Identity())}));
+  EXPECT_EQ(getScalars(read(folder.path(), {.name = "echo 30 ms", .frame = 1})),
+            (std::vector{7.0, 9.0, 11.0}));
+  EXPECT_EQ(findSeriesOfFile(folder / "frames").series.size(), 2u);
+}
+
+TEST(DicomFrames, FramesWithoutPositionsFollowTheStatedSpacing) {
+  const TemporaryFolder stated, thickness;
+  const auto write = [&](const TemporaryFolder& folder, std::uint32_t tag, double step) {
+    folder.write(
+        "nm", makeFrames(3, nullptr,
+                         {makeText(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.20"),
+                          makeText(0x00080060, "CS", "NM"), makeDecimals(tag, std::vector{step}),
+                          makeDecimals(0x00280030, std::vector{2.0, 0.5}),
+                          makeSequence(0x00540022,
+                                       {{makeDecimals(0x00200032, std::vector{1.0, 2.0, 3.0}),
+                                         makeDecimals(0x00200037, toCosines(Mat3::Identity()))}}),
+                          makeShorts(0x00540080, {1, 2, 3})}));
+    return read(folder.path());
+  };
+  const Volume volume = write(stated, 0x00180088, -4.0); // against the normal
+  EXPECT_EQ(getScalar(volume, 0), 2.0);
+  EXPECT_TRUE(isApprox(volume.grid.indexToWorld * Vec3(0, 0, 0), Vec3(-1, -2, -5)));
+  EXPECT_TRUE(volume.warnings.empty());
+  const Volume other = write(thickness, 0x00180050, 4.0);
+  EXPECT_TRUE(isApprox(other.grid.indexToWorld * Vec3(0, 0, 2), Vec3(-1, -2, 11)));
+  EXPECT_EQ(countWarnings(other, ErrorCode::assumedGeometry), 1u);
+}
+
+TEST(DicomFrames, FramesBeyondTheFileAreRefused) {
+  const TemporaryFolder folder;
+  const std::string bytes =
+      makeFrames(4, [](unsigned i) { return Item{makePosition(Vec3(0, 0, i))}; },
+                 {makeShared(Mat3::Identity())});
+  const Path file = folder.write("frames", bytes.substr(0, bytes.size() - 14));
+  fenestra::expectRefused(file, "damaged-file: PixelData", [&] { read(folder.path()); });
+}
+
+// ---- PET
+
+/// 70 kg, 350 MBq of fluorine-18 injected at 10:00, series at 11:00.
+DicomHeader makePet() {
+  DicomHeader h;
+  h.units = "BQML";
+  h.decayCorrection = "START";
+  h.seriesDate = "20240301";
+  h.seriesTime = "110000.00";
+  h.injectionTime = "100000";
+  h.weight = 70.0;
+  h.dose = 3.5e8;
+  h.halfLife = 6586.2;
+  return h;
+}
+
+TEST(StandardUptake, DoseDecaysFromTheInjectionToTheSeries) {
+  std::string missing;
+  DicomHeader h = makePet();
+  const double atInjection = 70e3 / 3.5e8, decay = std::exp2(3600.0 / 6586.2);
+  EXPECT_NEAR(computeSuvFactor(h, missing).value(), atInjection * decay, 1e-12);
+  h.injectionDateTime = "20240229230000.0+0100"; // the day before, in a leap year
+  EXPECT_NEAR(computeSuvFactor(h, missing).value(), atInjection * std::exp2(12 * 3600.0 / 6586.2),
+              1e-9);
+  h.injectionDateTime = "";
+  h.seriesTime = "003000"; // past midnight
+  h.injectionTime = "233000";
+  EXPECT_NEAR(computeSuvFactor(h, missing).value(), atInjection * decay, 1e-12);
+  h.decayCorrection = "ADMIN";
+  EXPECT_NEAR(computeSuvFactor(h, missing).value(), atInjection, 1e-12);
+}
+
+TEST(StandardUptake, IncompleteHeadersGiveNoFactor) {
+  std::string missing;
+  const auto expectNone = [&](auto member, const auto& value) {
+    DicomHeader h = makePet();
+    h.*member = value;
+    EXPECT_FALSE(computeSuvFactor(h, missing));
+  };
+  expectNone(&DicomHeader::units, "CNTS");
+  expectNone(&DicomHeader::decayCorrection, "NONE");
+  expectNone(&DicomHeader::injectionTime, "");
+  expectNone(&DicomHeader::seriesTime, "noon");
+  expectNone(&DicomHeader::weight, std::nullopt);
+  expectNone(&DicomHeader::dose, 0.0);
+  expectNone(&DicomHeader::halfLife, std::nullopt);
+  EXPECT_EQ(missing.find("RadionuclideHalfLife"), 0u);
+}
+
+TEST(StandardUptake, VoxelsOfAPetAreSuv) {
+  const TemporaryFolder folder;
+  const auto write = [&](const std::string& units) {
+    folder.write(
+        "a",
+        makeSlice(
+            {.value = 5000,
+             .more = {makeText(0x00080060, "CS", "PT"), makeDecimals(0x00101030, std::vector{70.0}),
+                      makeDecimals(0x00281052, std::vector{0.0}),
+                      makeSequence(0x00540016, {{makeDecimals(0x00181074, std::vector{3.5e8})}}),
+                      makeText(0x00541001, "CS", units), makeText(0x00541102, "CS", "ADMIN")}}));
+    return read(folder.path());
+  };
+  const Volume suv = write("BQML");
+  EXPECT_EQ(suv.modality, Modality::pt);
+  EXPECT_NEAR(suv.maximum, 10000.0 * 70e3 / 3.5e8, 1e-6);
+  expectMessage(suv.warnings.at(0), "assumed-units | 0.0002");
+  const Volume counts = write("CNTS");
+  EXPECT_EQ(counts.maximum, 10000.0);
+  expectMessage(counts.warnings.at(0), "assumed-units | BQML");
+}
+
+} // namespace
+} // namespace fenestra::DicomFramesTests

@@ -1,0 +1,241 @@
+// Layouts of DICOM files as scanners, archives and anonymizers leave them: folders, several volumes
+// in one series, and incomplete series.
+
+#include "Approx.h"
+#include "DicomSliceFiles.h"
+
+namespace fenestra::DicomLayoutTests {
+namespace {
+
+using namespace dicomSlices;
+
+// ---- folders
+
+TEST(DicomLayout, FindsASeriesDeepInATreeWithOtherFiles) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "DICOM/S1/SE1");
+  std::filesystem::create_directories(folder / "VIEWER");
+  folder.write("AUTORUN.INF", "[autorun]");
+  folder.write("VIEWER/run.exe", "MZ");
+  folder.write("DICOM/S1/SE1/IM1", makeSlice({.value = 1}));
+  folder.write("DICOM/S1/SE1/IM0", makeSlice({.value = 2, .position = {0, 0, 3}}));
+  std::filesystem::create_directory_symlink(folder.path(), folder / "DICOM/loop");
+  EXPECT_EQ(getScalars(read(folder.path())), (std::vector{1.0, 2.0}));
+}
+
+TEST(DicomLayout, SlicesWithoutASeriesUidAreGroupedByWhatTheyShare) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 6; ++i)
+    folder.write(std::to_string(i),
+                 makeSlice({.value = 1.0 * i,
+                            .position = Vec3(0, 0, 3 * (i % 3)),
+                            .seriesUid = "",
+                            .more = {makeText(0x0008103e, "LO", i < 3 ? "thin" : "thick")}}));
+  const DicomFolder found = findDicomSeries(folder.path());
+  ASSERT_EQ(found.series.size(), 2u);
+  EXPECT_EQ(found.series[0].files().size(), 3u);
+  EXPECT_EQ(getScalars(read(folder.path(), {.name = "thick"})), (std::vector{3.0, 4.0, 5.0}));
+}
+
+TEST(DicomLayout, AFileStandsForItsSeries) {
+  const TemporaryFolder folder;
+  writeDepths(folder, {0, 2, 4});
+  folder.write("other", makeSlice({.seriesUid = "1.2.9"}));
+  const DicomFolder found = findSeriesOfFile(folder / "1");
+  ASSERT_EQ(found.series.size(), 1u);
+  const Volume volume = readDicomVolume(found.series[0]);
+  EXPECT_EQ(volume.grid.size.z(), 3);
+  ASSERT_EQ(volume.warnings.size(), 1u);
+  expectMessage(volume.warnings[0], "assumed-geometry | 3");
+}
+
+TEST(DicomLayout, SegmentationsAreNoSeries) {
+  const TemporaryFolder folder;
+  writeDepths(folder, {0, 2, 4});
+  folder.write("seg", makeSegFile({.frames = {{}}}));
+  folder.write("rt", makeStructureFile({{}}));
+  const DicomFolder found = findDicomSeries(folder.path());
+  EXPECT_EQ(found.series.size(), 1u);
+  EXPECT_EQ(found.segmentations.size(), 2u);
+  fenestra::expectRefused(folder / "seg", "segmentation-as-volume",
+                          [&] { findSeriesOfFile(folder / "seg"); });
+}
+
+TEST(DicomLayout, TheOnlyStackIsChosenAmongSingleImages) {
+  const TemporaryFolder folder;
+  writeDepths(folder, {0, 2, 4});
+  folder.write("scout", makeSlice({.seriesUid = "1.2.9"}));
+  const Volume volume = read(folder.path());
+  EXPECT_EQ(volume.grid.size.z(), 3);
+  EXPECT_EQ(countWarnings(volume, ErrorCode::omittedSlices), 1u);
+}
+
+// ---- slices that do not belong to the volume
+
+TEST(DicomLayout, LocalizersAndOtherSizesAreLeftOut) {
+  const TemporaryFolder folder;
+  writeDepths(folder, {0, 2, 4});
+  folder.write("wide", makeSlice({.position = {0, 0, 6}, .columns = 8}));
+  folder.write("turned", makeSlice({.position = {0, 0, 6},
+                                    .axes = Mat3(Vec3(0, 1, 0), Vec3(0, 0, -1), Vec3(-1, 0, 0))}));
+  folder.write("scout",
+               makeSlice({.position = {0, 0, 6},
+                          .more = {makeText(0x00080008, "CS", "ORIGINAL\\PRIMARY\\LOCALIZER")}}));
+  const Volume volume = read(folder.path());
+  EXPECT_EQ(getScalars(volume), (std::vector{0.0, 1.0, 2.0}));
+  ASSERT_EQ(countWarnings(volume, ErrorCode::omittedSlices), 2u);
+  expectMessage(volume.warnings[0], "omitted-slices | 1 of 6");
+  expectMessage(volume.warnings[1], "omitted-slices | 2 of 6");
+}
+
+TEST(DicomLayout, CopiesAreLeftOut) {
+  const TemporaryFolder instances, voxels;
+  for (const char* name : {"a", "b"})
+    instances.write(name, makeSlice({.value = name[0] == 'a' ? 5.0 : 6.0, .sopUid = "1.9.1"}));
+  instances.write("c", makeSlice({.value = 7, .position = {0, 0, 2}, .sopUid = "1.9.1"}));
+  const Volume one = read(instances.path());
+  EXPECT_EQ(getScalars(one), (std::vector{5.0, 7.0}));
+  EXPECT_EQ(countWarnings(one, ErrorCode::omittedSlices), 1u);
+  for (int i = 0; i < 4; ++i)
+    voxels.write(std::to_string(i), makeSlice({.value = i == 3 ? 1.0 : 1.0 * i,
+                                               .position = Vec3(0, 0, i == 3 ? 2 : 2 * i),
+                                               .instance = i}));
+  const Volume other = read(voxels.path());
+  EXPECT_EQ(getScalars(other), (std::vector{0.0, 1.0, 2.0}));
+  EXPECT_EQ(countWarnings(other, ErrorCode::omittedSlices), 1u);
+}
+
+// ---- several volumes in a series
+
+/// Writes 3 positions with `count` slices each. `more` adds elements to the k-th.
+void writeRepeated(const TemporaryFolder& folder, int count,
+                   const std::function<std::vector<Element>(int)>& more) {
+  for (int z = 0; z < 3; ++z)
+    for (int k = 0; k < count; ++k)
+      folder.write(std::to_string(z) + "_" + std::to_string(count - k),
+                   makeSlice({.value = 10.0 * k + z,
+                              .position = Vec3(0, 0, 2 * z),
+                              .instance = k * 3 + z,
+                              .more = more(k)}));
+}
+
+TEST(DicomLayout, EchoesAreVolumesWithNames) {
+  const TemporaryFolder folder;
+  writeRepeated(folder, 2, [](int k) {
+    return std::vector{makeDecimals(0x00180081, std::vector{k == 0 ? 2.46 : 4.92})};
+  });
+  fenestra::expectRefused(folder.path(), "ambiguous-volume | 2 DICOM | echo 2.46 ms | echo 4.92 ms",
+                          [&] { read(folder.path()); });
+  EXPECT_EQ(getScalars(read(folder.path(), {.name = "echo 4.92 ms"})),
+            (std::vector{10.0, 11.0, 12.0}));
+  EXPECT_EQ(getScalars(read(folder.path(), {.name = "4 echo 2.46 ms"})),
+            (std::vector{0.0, 1.0, 2.0}));
+}
+
+TEST(DicomLayout, DiffusionWeightsAreVolumesAlsoInPrivateTags) {
+  const TemporaryFolder standard, siemens, ge;
+  writeRepeated(standard, 2, [](int k) { return std::vector{makeDouble(0x00189087, 800.0 * k)}; });
+  writeRepeated(siemens, 2, [](int k) {
+    return std::vector{makeText(0x00190010, "LO", "SIEMENS MR HEADER"),
+                       makeText(0x0019100c, "IS", std::to_string(800 * k))};
+  });
+  writeRepeated(ge, 2, [](int k) {
+    return std::vector{makeText(0x00430010, "LO", "GEMS_PARM_01"),
+                       makeText(0x00431039, "IS", std::to_string(1000000000 + 800 * k) + "\\8\\0")};
+  });
+  for (const TemporaryFolder* folder : {&standard, &siemens, &ge})
+    EXPECT_EQ(getScalars(read(folder->path(), {.name = "b 800"})), (std::vector{10.0, 11.0, 12.0}));
+}
+
+TEST(DicomLayout, TimesAreFramesInTheirOrder) {
+  const TemporaryFolder temporal, trigger, unnamed;
+  writeRepeated(temporal, 3, [](int k) {
+    return std::vector{makeText(0x00200100, "IS", std::to_string(9 + k))};
+  });
+  writeRepeated(trigger, 3, [](int k) {
+    return std::vector{makeDecimals(0x00181060, std::vector{100.0 * k})};
+  });
+  writeRepeated(unnamed, 3, [](int) { return std::vector<Element>(); });
+  for (const TemporaryFolder* folder : {&temporal, &trigger, &unnamed}) {
+    const Volume first = read(folder->path());
+    EXPECT_EQ(first.frameCount, 3u);
+    EXPECT_EQ(getScalars(first), (std::vector{0.0, 1.0, 2.0}));
+    EXPECT_EQ(countWarnings(first, ErrorCode::assumedFrame), 1u);
+    EXPECT_EQ(getScalars(read(folder->path(), {.frame = 2})), (std::vector{20.0, 21.0, 22.0}));
+  }
+  fenestra::expectRefused(unnamed.path(), "unknown-frame",
+                          [&] { read(unnamed.path(), {.frame = 3}); });
+}
+
+TEST(DicomLayout, AnAbortedLastTimeIsLeftOut) {
+  const TemporaryFolder folder;
+  writeRepeated(folder, 3,
+                [](int k) { return std::vector{makeText(0x00200100, "IS", std::to_string(k))}; });
+  folder.write("last", makeSlice({.value = 30, .more = {makeText(0x00200100, "IS", "3")}}));
+  const Volume volume = read(folder.path());
+  EXPECT_EQ(volume.frameCount, 3u);
+  EXPECT_EQ(countWarnings(volume, ErrorCode::omittedSlices), 1u);
+}
+
+TEST(DicomLayout, AKeyThatVariesFromSliceToSliceDividesNothing) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 4; ++i)
+    folder.write(std::to_string(i),
+                 makeSlice({.value = 1.0 * i,
+                            .position = Vec3(0, 0, i),
+                            .more = {makeDecimals(0x00181060, std::vector{10.0 * i})}}));
+  const Volume volume = read(folder.path());
+  EXPECT_EQ(volume.frameCount, 1u);
+  EXPECT_EQ(volume.grid.size.z(), 4);
+  EXPECT_TRUE(volume.warnings.empty());
+}
+
+TEST(DicomLayout, SlicesAtOnePositionThatNothingDistinguishesAreRefused) {
+  const TemporaryFolder folder;
+  writeDepths(folder, {0, 2, 4, 2});
+  fenestra::expectRefused(folder / "1", "invalid-field: ImagePositionPatient | 3",
+                          [&] { read(folder.path()); });
+}
+
+// ---- incomplete and uneven series
+
+TEST(DicomLayout, AMissingSliceIsInterpolated) {
+  const TemporaryFolder folder;
+  writeDepths(folder, {10, 12, 14, 18, 20});
+  const Volume volume = read(folder.path());
+  EXPECT_EQ(getScalars(volume), (std::vector{0.0, 1.0, 2.0, 2.5, 3.0, 4.0}));
+  EXPECT_TRUE(isApprox(volume.grid.indexToWorld.linear().col(2), Vec3(0, 0, 2)));
+  EXPECT_TRUE(isApprox(volume.grid.indexToWorld.translation(), Vec3(0, 0, 10)));
+  ASSERT_EQ(volume.warnings.size(), 1u);
+  expectMessage(volume.warnings[0], "interpolated-slices | 4 mm between 14 and 18 mm | 1 slice");
+}
+
+TEST(DicomLayout, UnevenSlicesAreResampledAtTheSmallestDistance) {
+  const TemporaryFolder folder;
+  writeDepths(folder, {0, 3, 6, 9, 15, 21, 27});
+  const Volume volume = read(folder.path());
+  EXPECT_EQ(getScalars(volume), (std::vector{0.0, 1.0, 2.0, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5, 6.0}));
+  EXPECT_NEAR(volume.grid.spacing().z(), 3.0, 1e-9);
+  const TemporaryFolder irregular; // no common step
+  writeDepths(irregular, {0, 2, 4, 6, 9.1});
+  const Volume other = read(irregular.path());
+  EXPECT_EQ(other.grid.size.z(), 6); // ceil(9.1 / 2) steps
+  EXPECT_NEAR(other.grid.spacing().z(), 9.1 / 5, 1e-9);
+  EXPECT_EQ(getScalars(other).back(), 4.0);
+}
+
+TEST(DicomLayout, AGapTooLargeToFillIsRefused) {
+  const TemporaryFolder folder;
+  writeDepths(folder, {0, 1, 2, 300});
+  fenestra::expectRefused(folder / "2", "invalid-field: ImagePositionPatient | 298 mm",
+                          [&] { read(folder.path()); });
+}
+
+TEST(DicomLayout, DeflatedSlicesAreRead) {
+  const TemporaryFolder folder;
+  folder.write("a", makeSlice({.value = 3}, Syntax::deflated));
+  EXPECT_EQ(getScalars(read(folder.path())), std::vector{3.0});
+}
+
+} // namespace
+} // namespace fenestra::DicomLayoutTests
