@@ -61,6 +61,29 @@ TEST(DicomLayout, SegmentationsAreNoSeries) {
                           [&] { findSeriesOfFile(folder / "seg"); });
 }
 
+TEST(DicomLayout, SegmentationsReferToASeriesOrItsFrame) {
+  const TemporaryFolder folder;
+  const auto makeFrame = [](const char* uid) { return makeText(0x00200052, "UI", uid); };
+  folder.write("ct", makeSlice({.more = {makeFrame("1.5")}}));
+  const auto write = [&](const char* name, const Element& reference) {
+    folder.write(name, makeFile(merge({makeText(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.66.4"),
+                                       makeText(0x00080060, "CS", "SEG"),
+                                       makeText(0x0020000e, "UI", "1.2.8")},
+                                      {reference}),
+                                Syntax::explicitLittle));
+  };
+  const auto makeReference = [](const char* uid) {
+    return makeSequence(0x00081115, {{makeText(0x0020000e, "UI", uid)}});
+  };
+  write("series", makeReference("1.2.3"));
+  write("other series", makeReference("1.2.4"));
+  write("frame", makeFrame("1.5"));
+  write("other frame", makeFrame("1.6"));
+  const DicomFolder found = findDicomSeries(folder.path());
+  EXPECT_EQ(found.segmentationsOf(found.series.at(0)),
+            (std::vector{folder / "frame", folder / "series"}));
+}
+
 TEST(DicomLayout, TheOnlyStackIsChosenAmongSingleImages) {
   const TemporaryFolder folder;
   writeDepths(folder, {0, 2, 4});

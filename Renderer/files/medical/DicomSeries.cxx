@@ -138,8 +138,8 @@ Paths DicomFolder::segmentationsOf(const DicomSeries& one) const {
   Paths found;
   for (const DicomSegmentationFile& file : segmentations) {
     const DicomHeader& h = file.header;
-    if (h.referencedSeries.empty() ? h.frameOfReference == frameOfReference
-                                   : h.referencedSeries == one.uid)
+    const bool isInFrame = !frameOfReference.empty() && h.frameOfReference == frameOfReference;
+    if (h.referencedSeries.empty() ? isInFrame : h.referencedSeries == one.uid)
       found.push_back(file.path);
   }
   return found;
