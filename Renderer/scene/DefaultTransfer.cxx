@@ -100,8 +100,9 @@ std::optional<std::string> chooseTransferPreset(const Volume& volume, const Scan
   }
   if (volume.modality == Modality::us)
     return "us-fetal";
+  constexpr double greatestUptake = 1000.0; // SUV; values in Bq/ml exceed it
   if (volume.modality == Modality::pt)
-    return std::nullopt; // by the volume's range
+    return volume.maximum < greatestUptake ? std::optional("pet") : std::nullopt;
   const bool isMr = volume.modality == Modality::mr || !content.brain.empty() || hasAir(volume);
   if (isMr)
     return content.isKnee ? "mr-knee" : "mr-anatomy";

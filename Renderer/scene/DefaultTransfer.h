@@ -37,7 +37,7 @@ ScanContent describeScan(const Volume& volume, const Segmentation& segmentation,
 /// CT: ct-skin without segments, ct-lung for the lungs, ct-contrast if the file states a contrast
 /// agent or blood is above 130 HU (without agent it is below 90), else ct-anatomy. MR: mr-knee for
 /// a knee, else mr-anatomy; also if the file states no modality and a tenth of the values are air.
-/// Ultrasound: us-fetal.
+/// Ultrasound: us-fetal. PET in SUV: pet.
 std::optional<std::string> chooseTransferPreset(const Volume& volume, const ScanContent& content);
 
 /// Function for the volume's scalars; relative scalars are mapped to its robust range or to

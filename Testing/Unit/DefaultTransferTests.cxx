@@ -41,6 +41,7 @@ TEST(DefaultTransfer, FollowsModalityContrastAgentAndSegments) {
       {Modality::mr, true, false, {.hasSegments = true}, "mr-anatomy"},
       {Modality::mr, false, false, {}, "mr-anatomy"},
       {Modality::us, false, false, {}, "us-fetal"},
+      {Modality::pt, false, false, {}, "pet"},
       {{}, false, false, {.hasSegments = true, .brain = {1.0}}, "mr-anatomy"},
       {Modality::mr, false, false, {.hasSegments = true, .isKnee = true}, "mr-knee"},
       {{}, false, true, {.hasSegments = true}, std::nullopt},
@@ -54,6 +55,9 @@ TEST(DefaultTransfer, FollowsModalityContrastAgentAndSegments) {
   }
   EXPECT_EQ(chooseTransferPreset(makeRamp(-8192, 3071), {}), "ct-skin") << "padded";
   EXPECT_FALSE(chooseTransferPreset(makeRamp(0, 4000), {}));
+  Volume counts = makeRamp(0, 30000);
+  counts.modality = Modality::pt;
+  EXPECT_FALSE(chooseTransferPreset(counts, {})) << "Bq/ml";
   const auto makeBody = [](double air) {
     return makeVolume<float>(makeCenteredGrid({40, 30, 20}, {2.0, 2.0, 2.0}), [=](const Vec3& p) {
       return p.y() < air * 30.0 ? 3.0 : 200.0 + 20.0 * p.x();
