@@ -60,6 +60,7 @@ constexpr auto words = [] {
       {unmatchedLabels, "unmatched-labels"},
       {unnamedSegments, "unnamed-segments"},
       {unusedLabels, "unused-labels"},
+      {unusedSegmentation, "unused-segmentation"},
       {angleOfOrthographicCamera, "angle-of-orthographic-camera"},
       {emptyCrop, "empty-crop"},
       {emptyImagePlane, "empty-image-plane"},

@@ -62,6 +62,7 @@ enum class ErrorCode : std::uint8_t {
   unmatchedLabels,     ///< a requested table names no value of the file
   unnamedSegments,     ///< a segment is unknown, and all have default names
   unusedLabels,        ///< warning: a table beside the file
+  unusedSegmentation,  ///< warning: beside the volume
 
   // Views, clips and transfer functions
   angleOfOrthographicCamera,

@@ -51,6 +51,7 @@ constexpr auto adviceTable = [] {
       {unmatchedLabels, "give the table of this label map as --labels"},
       {unnamedSegments, "--labels can name the values"},
       {unusedLabels, "--labels FILE forces its use"},
+      {unusedSegmentation, "--focus NAME or --segmentation FILE uses it"},
   });
 }();
 

@@ -153,6 +153,21 @@ std::optional<std::string> Input::segmentationFile(const InputChoice& choice) co
   return found.empty() ? std::nullopt : std::optional(found.front().string());
 }
 
+std::vector<Message>
+Input::findUnusedSegmentations(const std::optional<std::string>& volume) const {
+  constexpr std::size_t mostListed = 3;
+  const DicomFolder* const folder = dicom();
+  if (!folder)
+    return {};
+  const auto found = folder->segmentationsOf(chooseSeries(folder->series, volume, path().string()));
+  if (found.empty())
+    return {};
+  return {
+      makeMessage(ErrorCode::unusedSegmentation, path(), "has a segmentation that is not used: ",
+                  join(
+                      found, ", ", [](const auto& file) { return file.string(); }, mostListed))};
+}
+
 VolumeInput Input::volume(const VolumeChoice& choice) const {
   if (const DicomFolder* const folder = dicom()) {
     const DicomSeries series = chooseSeries(folder->series, choice.name, path().string());

@@ -87,6 +87,8 @@ public:
   std::optional<std::string> segmentationFile(const InputChoice& choice) const;
   /// What the folder, or the folder of the DICOM file, holds; null if the input is neither.
   const DicomFolder* dicom() const;
+  /// Warning about segmentations of a DICOM series, for a render that uses none.
+  std::vector<Message> findUnusedSegmentations(const std::optional<std::string>& volume) const;
 
   VolumeInput volume(const VolumeChoice& choice) const;
   /// Adds the form of a NIfTI volume that agrees with the segmentation file (NiftiForms.h).

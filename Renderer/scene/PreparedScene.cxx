@@ -271,8 +271,9 @@ std::vector<Message> PreparedScene::warnings() const {
   if (m_table.result())
     append(m_table->warnings, warnings);
   append(m_settings->warnings, warnings);
-  if (m_segments.result())
-    append(m_segments->segmentation.warnings(), warnings);
+  append(m_segments.result() ? m_segments->segmentation.warnings()
+                             : m_input.findUnusedSegmentations(m_request.volume.name),
+         warnings);
   append(m_focus->warnings, warnings);
   append(m_transfer->warnings, warnings);
   if (m_focusWarnings.result())
