@@ -49,6 +49,32 @@ TEST(DicomLayout, AFileStandsForItsSeries) {
   expectMessage(volume.warnings[0], "assumed-geometry | 3");
 }
 
+/// A file that ends within the first item of a sequence, on which GDCM terminates its process.
+std::string makeFatalFile() {
+  using namespace std::string_literals;
+  return std::string(128, '\0') + "DICM\2\0\x10\0UI\x14\0"s + "1.2.840.10008.1.2.1\0"s +
+         "\4\0\x20\x12SQ\0\0\xc8\x29\0\0\xfe\xff\0\xe0"s;
+}
+
+TEST(DicomLayout, UnreadableFilesAreLeftOut) {
+  const TemporaryFolder folder;
+  writeDepths(folder, {0, 2, 4});
+  folder.write("directory", makeFatalFile());
+  const DicomFolder found = findDicomSeries(folder.path());
+  ASSERT_EQ(found.series.size(), 1u);
+  const Volume volume = readDicomVolume(found.series[0]);
+  EXPECT_EQ(volume.grid.size.z(), 3);
+  ASSERT_EQ(volume.warnings.size(), 1u);
+  expectMessage(volume.warnings[0], "omitted-slices: directory");
+}
+
+TEST(DicomLayout, ManyUnreadableFilesAreRefused) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 20; ++i)
+    folder.write(std::to_string(i), makeFatalFile());
+  EXPECT_THROW(findDicomSeries(folder.path()), Error);
+}
+
 TEST(DicomLayout, SegmentationsAreNoSeries) {
   const TemporaryFolder folder;
   writeDepths(folder, {0, 2, 4});

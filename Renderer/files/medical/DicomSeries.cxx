@@ -54,19 +54,43 @@ std::string getSeriesKey(const DicomHeader& h) {
                 h.seriesDescription, '\n', h.modality);
 }
 
+/// Headers of the files of a folder. Files on which the reader fails are left out with a warning.
+class FolderHeaders {
+public:
+  std::vector<DicomHeader> read(const Path& file) {
+    constexpr std::size_t mostFailures = 16; // each takes a new process
+    try {
+      return m_reader.readHeaders(file);
+    } catch (const Error& error) {
+      if (error.message().code != ErrorCode::unreadableFile || m_warnings.size() == mostFailures)
+        throw;
+      m_warnings.push_back(
+          makeMessage(ErrorCode::omittedSlices, file, "cannot be read, and is left out"));
+      return {};
+    }
+  }
+  const std::vector<Message>& warnings() const { return m_warnings; }
+
+private:
+  DicomReader m_reader;
+  std::vector<Message> m_warnings;
+};
+
 /// `subject`: the folder in messages.
 DicomFolder groupFiles(const Paths& files, const std::string& subject) {
-  DicomReader reader;
+  FolderHeaders headers;
   DicomFolder folder;
   std::map<std::string, DicomSlices> bySeries;
   for (const Path& file : files)
-    for (DicomHeader& header : reader.readHeaders(file))
+    for (DicomHeader& header : headers.read(file))
       if (isDicomSegmentation(header))
         folder.segmentations.push_back({file, std::move(header)});
       else if (!header.isComplete || isImage(header))
         bySeries[getSeriesKey(header)].push_back({file, std::move(header)});
   for (auto& [key, slices] : bySeries)
     std::ranges::move(splitSeries(std::move(slices), subject), std::back_inserter(folder.series));
+  for (DicomSeries& series : folder.series)
+    std::ranges::copy(headers.warnings(), std::back_inserter(series.warnings));
   const auto isVolume = [](const DicomSeries& series) { return series.isVolume; };
   if (std::ranges::any_of(folder.series, isVolume))
     std::erase_if(folder.series, std::not_fn(isVolume));
