@@ -17,11 +17,16 @@ std::string quoteForShell(const std::string& argument) {
 
 std::string formatExample(const nlohmann::ordered_json& example) {
   const auto get = [&](const char* member) { return example.at(member).get<std::string>(); };
-  const std::string command =
-      concat("fenestra ", quoteForShell(get("volume")), " --segmentation ",
-             quoteForShell(get("segmentation")), " --focus ",
-             quoteForShell(replaceAll(get("focus"), ",", "\\,")), " --output image.png");
-  return "  " + toOneLine(command) + "\n";
+  std::string command = "fenestra " + quoteForShell(get("volume"));
+  const auto add = [&](const char* option, const char* member) {
+    if (!example.at(member).is_null())
+      command += concat(option, quoteForShell(get(member)));
+  };
+  add(" --volume ", "choice");
+  add(" --segmentation ", "segmentation");
+  if (!example.at("focus").is_null())
+    command += " --focus " + quoteForShell(replaceAll(get("focus"), ",", "\\,"));
+  return "  " + toOneLine(command) + " --output image.png\n";
 }
 
 } // namespace fenestra

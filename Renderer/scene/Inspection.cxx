@@ -127,14 +127,28 @@ std::string findVolumeBeside(const std::filesystem::path& segmentation) {
                            : std::filesystem::path("VOLUME");
 }
 
-/// Adds a render of the first segment with voxels. `volume`: the input.
-void addExample(const std::string& volume, const Json& segmentation, Json& report) {
-  for (const Json& segment : segmentation["segments"])
-    if (segment["voxels"] > 0) {
-      report["examples"].push_back(
-          {{"volume", volume}, {"segmentation", segmentation["name"]}, {"focus", segment["id"]}});
-      return;
+/// Adds renders without a segmentation: of the volume, or if none is chosen, of each series.
+void addVolumeExamples(const RenderRequest& request, const DicomFolder* dicom, Json& report) {
+  constexpr std::size_t mostListed = 8;
+  const auto add = [&](const Json& choice) {
+    report["examples"].push_back({{"volume", request.input.string()},
+                                  {"choice", choice},
+                                  {"segmentation", nullptr},
+                                  {"focus", nullptr}});
+  };
+  if (report["refused"].is_null()) {
+    add(nullIfEmpty(request.volume.name.value_or("")));
+  } else if (dicom && !request.volume.name) {
+    for (const DicomSeries& series : dicom->series) {
+      const auto isNamesake = [&](const DicomSeries& other) {
+        return other.name() == series.name();
+      };
+      const bool isUnique = std::ranges::count_if(dicom->series, isNamesake) == 1;
+      const std::string& choice = isUnique && !series.name().empty() ? series.name() : series.uid;
+      if (series.isVolume && !choice.empty() && report["examples"].size() < mostListed)
+        add(choice);
     }
+  }
 }
 
 /// A folder of masks is no input of a render, but its segmentation. nullopt: it has
@@ -148,7 +162,7 @@ std::optional<Json> inspectMaskFolder(const RenderRequest& request, const Input&
       inspectSegmentationFile(request.input, nullptr, request.labels, report["warnings"]);
   if (2 * folder["segments"].size() < files)
     return std::nullopt;
-  addExample(findVolumeBeside(request.input), folder, report);
+  addExample(findVolumeBeside(request.input), nullptr, folder["name"], folder, report);
   report["segmentations"].push_back(folder);
   return report;
 }
@@ -173,7 +187,8 @@ void addSegmentationsOf(const DicomFolder& dicom, const RenderRequest& request, 
       chooseSeries(dicom.series, request.volume.name, request.input.string());
   for (const auto& file : dicom.segmentationsOf(series)) {
     const Json one = inspectSegmentationFile(file, &grid, request.labels, report["warnings"]);
-    addExample(request.input.string(), one, report);
+    addExample(request.input.string(), nullIfEmpty(request.volume.name.value_or("")), one["name"],
+               one, report);
     report["segmentations"].push_back(one);
   }
 }
@@ -208,8 +223,11 @@ Json inspectFiles(const RenderRequest& request, const Input& input) {
     segmentations.back()["used"] = true;
     if (grid)
       report["render"]["segmentation"] = nullIfEmpty(*request.segmentation);
-    addExample(request.input.string(), segmentations.back(), report);
+    addExample(request.input.string(), nullIfEmpty(request.volume.name.value_or("")),
+               segmentations.back()["name"], segmentations.back(), report);
   }
+  if (report["examples"].empty() && report["kind"] != "segmentation")
+    addVolumeExamples(request, dicom, report);
   return report;
 }
 
@@ -341,6 +359,23 @@ Json inspectSegmentationFile(const std::filesystem::path& path, const Grid* volu
       warnings.push_back(warning);
   }
   return json;
+}
+
+void addExample(const std::string& volume, const Json& choice, const Json& segmentation,
+                const Json& report, Json& whole) {
+  const auto countNamesakes = [&](const Json& name) {
+    return std::ranges::count_if(report["segments"],
+                                 [&](const Json& other) { return other["name"] == name; });
+  };
+  for (const Json& segment : report["segments"])
+    if (segment["voxels"] > 0 && segment["shown"]) {
+      const bool isUnique = segment["name"] != "" && countNamesakes(segment["name"]) == 1;
+      whole["examples"].push_back({{"volume", volume},
+                                   {"choice", choice},
+                                   {"segmentation", segmentation},
+                                   {"focus", segment[isUnique ? "name" : "id"]}});
+      return;
+    }
 }
 
 Inspection inspectInput(const RenderRequest& request, const Input& input) {

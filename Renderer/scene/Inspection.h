@@ -27,7 +27,8 @@ namespace fenestra {
 ///     series [uid, number, description, modality, part (like "echo 4.9 ms"), frames, files]
 ///     others {tag: count}
 ///     materials [name, kind, color (like a segment's material)]: the library
-///     examples [volume, segmentation, focus]: renders, for the segmentations that are files
+///     examples [volume, choice (of a series or node, or null), segmentation (file or node, or
+///       null), focus (segment, or null)]: renders
 ///     render: null if the choice of nodes is ambiguous, else what a render uses, with null for
 ///       unreadable parts: volume {id, name, size, spacing, center, voxelType, range, frames,
 ///       transforms [id, innermost first]}, look {source ("volumeProperty" | "volumeDisplay" |

@@ -50,6 +50,12 @@ void addSegments(const Segmentation& segmentation, const std::map<std::string, b
 Json inspectSegmentationFile(const std::filesystem::path& path, const Grid* volume,
                              const std::optional<std::string>& labels, Json& warnings);
 
+/// Adds a render of the first visible segment with voxels to the examples of `whole`. `choice`:
+/// --volume, `segmentation`: --segmentation; null: neither is needed. `report`: of the
+/// segmentation.
+void addExample(const std::string& volume, const Json& choice, const Json& segmentation,
+                const Json& report, Json& whole);
+
 Inspection inspectScene(const RenderRequest& request, const Input& input);
 
 } // namespace fenestra

@@ -45,6 +45,8 @@ public:
       inspectRender();
     inspectNodes();
     inspectChosenFile();
+    if (m_report["refused"].is_null())
+      addExamples();
     return std::move(m_report);
   }
 
@@ -274,6 +276,22 @@ private:
     segmentation["used"] = true;
     m_report["render"]["segmentation"] = nullIfEmpty(path.string());
     m_report["segmentations"].push_back(std::move(segmentation));
+  }
+
+  /// Adds a render with a focus of each segmentation, or if there is none, without a focus.
+  void addExamples() {
+    const Json choice = nullIfEmpty(m_request.volume.name.value_or(""));
+    const Json segmentations = m_report["segmentations"];
+    for (const Json& one : segmentations) {
+      const Json& name = one["id"].is_null() ? one["name"] : one["id"];
+      const bool isOnly = segmentations.size() == 1 && !m_request.segmentation;
+      addExample(m_input.path().string(), choice, isOnly ? Json() : name, one, m_report);
+    }
+    if (m_report["examples"].empty())
+      m_report["examples"].push_back({{"volume", m_input.path().string()},
+                                      {"choice", choice},
+                                      {"segmentation", nullptr},
+                                      {"focus", nullptr}});
   }
 
   const RenderRequest& m_request;

@@ -90,9 +90,10 @@ TEST_F(InspectCommand, ExampleForAFolderOfMasksRuns) {
   EXPECT_EQ(report["segmentations"][0]["segments"].size(), 2u);
   EXPECT_EQ(report["segmentations"][0]["segments"][0]["voxels"], 0);
   ASSERT_EQ(report["examples"].size(), 1u);
-  EXPECT_EQ(
-      report["examples"][0],
-      (Json{{"volume", "volume.nrrd"}, {"segmentation", "two masks"}, {"focus", "left lung"}}));
+  EXPECT_EQ(report["examples"][0], (Json{{"volume", "volume.nrrd"},
+                                         {"choice", nullptr},
+                                         {"segmentation", "two masks"},
+                                         {"focus", "left lung"}}));
   EXPECT_NE(run({"inspect", "two masks"}, folder.path())
                 .out.find("fenestra volume.nrrd --segmentation 'two masks' --focus 'left lung' "
                           "--output image.png\n"),

@@ -274,7 +274,7 @@ TEST_F(TurntableCommand, RejectsOptionsForASingleImage) {
           {"missing folder", makeArguments({"--output", "nowhere/turn.png"}), 4,
            "nowhere/turn.turntable.json: | No such file"},
           {"no frames", makeArguments({"--steady", "50"}), 2, "--steady:"},
-          {"unknown", makeArguments({"--frame", "3"}), 2, "--frame: | --frames?"},
+          {"unknown", makeArguments({"--framez", "3"}), 2, "--framez: | --frames?"},
           {"an input",
            {"turntable", "volume_0002.nrrd", "--output", "volume.nrrd"},
            2,
