@@ -31,32 +31,32 @@ std::optional<PatientAxes> findAxes(const Grid& grid) {
 }
 
 /// Voxels above the level, in patient axes.
-Matter findMatter(const Volume& ct, const PatientAxes& axes, bool isDownPositive) {
+SolidVoxels findSolid(const Volume& ct, const PatientAxes& axes, bool isDownPositive) {
   const Size3& size = ct.grid.size;
   const Vec3 spacing = ct.grid.spacing();
-  Matter matter;
-  matter.size = {size[axes.across], size[axes.down], size[axes.along]};
-  matter.spacing = {spacing[axes.across], spacing[axes.down], spacing[axes.along]};
-  matter.marks.resize(static_cast<std::size_t>(size.prod()));
+  SolidVoxels solid;
+  solid.size = {size[axes.across], size[axes.down], size[axes.along]};
+  solid.spacing = {spacing[axes.across], spacing[axes.down], spacing[axes.along]};
+  solid.marks.resize(static_cast<std::size_t>(size.prod()));
   const std::array<std::int64_t, 3> strides = {1, size.x(), size.x() * size.y()};
   const auto stride = [&](int axis) { return strides[static_cast<std::size_t>(axis)]; };
   const auto fill = [&](const auto& voxels) {
-    forEachRow(matter.size, [&](std::int64_t row, std::int64_t slice, std::size_t to) {
-      const std::int64_t down = isDownPositive ? row : matter.size.y() - 1 - row;
+    forEachRow(solid.size, [&](std::int64_t row, std::int64_t slice, std::size_t to) {
+      const std::int64_t down = isDownPositive ? row : solid.size.y() - 1 - row;
       std::int64_t from = down * stride(axes.down) + slice * stride(axes.along);
-      for (std::int64_t x = 0; x < matter.size.x(); ++x, from += stride(axes.across))
-        matter.marks[to++] =
-            static_cast<double>(voxels[static_cast<std::size_t>(from)]) > Matter::level;
+      for (std::int64_t x = 0; x < solid.size.x(); ++x, from += stride(axes.across))
+        solid.marks[to++] =
+            static_cast<double>(voxels[static_cast<std::size_t>(from)]) > SolidVoxels::level;
     });
   };
   std::visit(fill, ct.voxels);
-  return matter;
+  return solid;
 }
 
 /// Rows of a sheet's top at full resolution.
 class TableTop {
 public:
-  TableTop(const Matter& matter, const Sheet& sheet) : m_matter(matter), m_sheet(sheet) {
+  TableTop(const SolidVoxels& solid, const Sheet& sheet) : m_solid(solid), m_sheet(sheet) {
     measureRows();
     fitContact();
   }
@@ -66,28 +66,28 @@ public:
 private:
   /// First row of the sheet; unknownRow: none, or it may be the patient's.
   std::int64_t findTop(std::int64_t column, std::int64_t slice) const {
-    const auto reach = static_cast<std::int64_t>(greatestSag / m_matter.spacing.y());
+    const auto reach = static_cast<std::int64_t>(greatestSag / m_solid.spacing.y());
     const std::int64_t usual = m_sheet.row(column);
     if (usual == unknownRow || !m_sheet.isFree(column, slice))
       return unknownRow;
     std::int64_t row = usual;
-    while (row < std::min(usual + reach, m_matter.size.y() - 1) && !m_matter.at(column, row, slice))
+    while (row < std::min(usual + reach, m_solid.size.y() - 1) && !m_solid.at(column, row, slice))
       ++row;
-    while (row > std::max<std::int64_t>(0, usual - reach) && m_matter.at(column, row - 1, slice))
+    while (row > std::max<std::int64_t>(0, usual - reach) && m_solid.at(column, row - 1, slice))
       --row;
-    return m_matter.at(column, row, slice) && row > usual - reach ? row : unknownRow;
+    return m_solid.at(column, row, slice) && row > usual - reach ? row : unknownRow;
   }
 
   std::int64_t measureThickness(std::int64_t column, std::int64_t row, std::int64_t slice) const {
     std::int64_t end = row;
-    while (end < m_matter.size.y() && m_matter.at(column, end, slice))
+    while (end < m_solid.size.y() && m_solid.at(column, end, slice))
       ++end;
     return end - row;
   }
 
   /// Medians of the columns over slices, and of the slices' offsets over columns.
   void measureRows() {
-    const Size3& size = m_matter.size;
+    const Size3& size = m_solid.size;
     m_tops.assign(static_cast<std::size_t>(size.x()), unknownRow);
     std::vector<std::vector<std::int64_t>> bySlice(static_cast<std::size_t>(size.z()));
     for (std::int64_t x = 0; x < size.x(); ++x) {
@@ -130,17 +130,17 @@ private:
       }
     if (!isSheetParallel(contact)) // below the sheet is nothing of the patient
       for (const std::size_t x : contact)
-        m_tops[x] += std::llround(thickestSheet / m_matter.spacing.y());
+        m_tops[x] += std::llround(thickestSheet / m_solid.spacing.y());
   }
 
   /// True if the sheet has the same thickness under the patient as beside.
   bool isSheetParallel(const std::vector<std::size_t>& contact) {
     constexpr double leastEqual = 0.9;
     const std::int64_t usual = findMedian(m_thicknesses);
-    const auto tolerance = std::max<std::int64_t>(1, std::llround(1.0 / m_matter.spacing.y()));
+    const auto tolerance = std::max<std::int64_t>(1, std::llround(1.0 / m_solid.spacing.y()));
     double all = 0.0, equal = 0.0;
     for (const std::size_t x : contact)
-      for (std::int64_t z = 0; z < m_matter.size.z(); ++z) {
+      for (std::int64_t z = 0; z < m_solid.size.z(); ++z) {
         const auto column = static_cast<std::int64_t>(x);
         if (m_sheet.isFree(column, z))
           continue;
@@ -151,7 +151,7 @@ private:
     return equal >= leastEqual * all;
   }
 
-  const Matter& m_matter;
+  const SolidVoxels& m_solid;
   const Sheet& m_sheet;
   std::vector<std::int64_t> m_tops, m_offsets, m_thicknesses;
 };
@@ -166,11 +166,11 @@ std::optional<ScannerTable> findScannerTable(const Volume& ct) {
     return std::nullopt;
   const bool isPosteriorPositive = ct.grid.indexToWorld.linear().col(axes->down).y() < 0.0;
   for (const bool isDownPositive : {isPosteriorPositive, !isPosteriorPositive}) { // supine, prone
-    const Matter matter = findMatter(ct, *axes, isDownPositive);
-    if (!mayHaveSheet(matter))
+    const SolidVoxels solid = findSolid(ct, *axes, isDownPositive);
+    if (!mayHaveSheet(solid))
       return std::nullopt;
-    if (const std::optional<Sheet> sheet = findSheet(matter)) {
-      ScannerTable table = TableTop(matter, *sheet).table();
+    if (const std::optional<Sheet> sheet = findSheet(solid)) {
+      ScannerTable table = TableTop(solid, *sheet).table();
       table.axes = *axes;
       table.isDownPositive = isDownPositive;
       return table;
@@ -206,10 +206,10 @@ double removeScannerTable(const ScannerTable& table, const Mask* preserved, Volu
         for (std::int64_t row = std::max<std::int64_t>(0, top - halo); row < rows; ++row) {
           voxel[axes.down] = table.isDownPositive ? row : rows - 1 - row;
           Value& value = voxels[linearIndex(voxel, size)];
-          const bool isMatter = static_cast<double>(value) > Matter::level;
-          if ((row < top && isMatter) || isPreserved(voxel))
+          const bool isSolid = static_cast<double>(value) > SolidVoxels::level;
+          if ((row < top && isSolid) || isPreserved(voxel))
             continue;
-          removed[slice] += isMatter;
+          removed[slice] += isSolid;
           value = std::min(value, emptied);
         }
       }

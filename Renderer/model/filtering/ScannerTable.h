@@ -24,12 +24,12 @@ struct ScannerTable {
   std::vector<std::int64_t> offsets; ///< to be added in each slice, where the table sags
 };
 
-/// nullopt: no table was found with certainty. Its sheet consists of matter above -500 HU thinner
+/// nullopt: no table was found with certainty. Its sheet consists of voxels above -500 HU, thinner
 /// than 14 mm in at least half of the slices, in pieces of 30 mm and 100 mm in all that lie on one
 /// parabola, which states the top where the patient lies on the sheet; what is below the sheet goes
 /// with it. Where the parabola does not fit within a voxel, or the sheet's lower side is not
 /// parallel to it, contact with the patient is uncertain, and the sheet remains there. Uncertain is
-/// a table if more than 0.1 % of thicker matter that is above its top reaches below it. Axes must
+/// a table if more than 0.1 % of the thicker bodies above its top reaches below it. Axes must
 /// be within 20 degrees of the patient's, and the volume at least 30 mm long.
 std::optional<ScannerTable> findScannerTable(const Volume& ct);
 

@@ -15,25 +15,24 @@ constexpr double leastPresence = 0.5; ///< of the slices
 constexpr double leastPiece = 30.0;   ///< mm, across; fingers are narrower
 constexpr double leastWidth = 100.0;  ///< mm, of all pieces
 constexpr std::size_t mostPieces = 16;
-constexpr double mostConflict = 0.001; ///< of thicker matter, below a top that it is above of
+constexpr double mostConflict = 0.001; ///< of bodies above a top: their part below it
 
 using Tops = std::vector<std::int64_t>;
 
 struct Cells {
-  explicit Cells(const Matter& matter) {
+  explicit Cells(const SolidVoxels& solid) {
     for (int axis = 0; axis < 3; ++axis) {
-      factor[axis] = std::max<std::int64_t>(1, std::llround(cellEdge / matter.spacing[axis]));
-      size[axis] = (matter.size[axis] + factor[axis] - 1) / factor[axis];
-      edge[axis] = matter.spacing[axis] * static_cast<double>(factor[axis]);
+      factor[axis] = std::max<std::int64_t>(1, std::llround(cellEdge / solid.spacing[axis]));
+      size[axis] = (solid.size[axis] + factor[axis] - 1) / factor[axis];
+      edge[axis] = solid.spacing[axis] * static_cast<double>(factor[axis]);
     }
     Marks empty(static_cast<std::size_t>(size.prod()), 1);
     forEachRow(size, [&](std::int64_t y, std::int64_t z, std::size_t row) {
-      for (std::int64_t k = z * factor.z(); k < std::min((z + 1) * factor.z(), matter.size.z());
-           ++k)
-        for (std::int64_t j = y * factor.y(); j < std::min((y + 1) * factor.y(), matter.size.y());
+      for (std::int64_t k = z * factor.z(); k < std::min((z + 1) * factor.z(), solid.size.z()); ++k)
+        for (std::int64_t j = y * factor.y(); j < std::min((y + 1) * factor.y(), solid.size.y());
              ++j)
-          for (std::int64_t i = 0; i < matter.size.x(); ++i)
-            if (matter.at(i, j, k))
+          for (std::int64_t i = 0; i < solid.size.x(); ++i)
+            if (solid.at(i, j, k))
               empty[row + static_cast<std::size_t>(i / factor.x())] = 0;
     });
     separate(empty);
@@ -41,7 +40,7 @@ struct Cells {
 
   Size3 factor, size; ///< voxels per cell; cells
   Vec3 edge;          ///< mm
-  Marks thick, thin;  ///< opening of the matter by a ball, and what that removes
+  Marks thick, thin;  ///< opening of the solid cells by a ball, and what that removes
 
 private:
   void separate(const Marks& empty) {
@@ -61,7 +60,7 @@ private:
   }
 };
 
-/// Per column, the uppermost row with thin matter in enough slices; -1: none.
+/// Per column, the uppermost row with thin cells in enough slices; -1: none.
 Tops findTops(const Cells& cells) {
   const Size3& size = cells.size;
   Tops tops(static_cast<std::size_t>(size.x()), -1);
@@ -165,7 +164,7 @@ Tops completeTops(const Tops& tops, const Candidate& candidate) {
   return result;
 }
 
-/// Thick matter, in connected parts that are above and below the top of a table.
+/// Thick bodies, connected parts, that are above and below the top of a table.
 class Conflict {
 public:
   /// `below`: first rows below the table's sheet; -1: outside of it.
@@ -234,13 +233,13 @@ std::optional<Parabola> Parabola::fit(const std::vector<std::pair<double, double
   return Parabola{s[0] - middle * (b - middle * c), b - 2.0 * middle * c, c};
 }
 
-bool mayHaveSheet(const Matter& matter) {
-  const Size3& size = matter.size;
+bool mayHaveSheet(const SolidVoxels& solid) {
+  const Size3& size = solid.size;
   std::vector<std::int64_t> present(static_cast<std::size_t>(size.x() * size.y()));
   tbb::parallel_for(std::int64_t{0}, size.y(), [&](std::int64_t y) {
     for (std::int64_t z = 0; z < size.z(); ++z)
       for (std::int64_t x = 0; x < size.x(); ++x)
-        present[static_cast<std::size_t>(x + y * size.x())] += matter.at(x, y, z);
+        present[static_cast<std::size_t>(x + y * size.x())] += solid.at(x, y, z);
   });
   const auto isPresent = [&](std::int64_t x, std::int64_t y) {
     return y < size.y() &&
@@ -255,9 +254,9 @@ bool mayHaveSheet(const Matter& matter) {
       while (isPresent(x, y))
         ++y;
       isThin = y > first &&
-               static_cast<double>(y - first) * matter.spacing.y() < thickestSheet + 2.0 * cellEdge;
+               static_cast<double>(y - first) * solid.spacing.y() < thickestSheet + 2.0 * cellEdge;
     }
-    width += isThin ? matter.spacing.x() : 0.0;
+    width += isThin ? solid.spacing.x() : 0.0;
   }
   return width >= leastWidth;
 }
@@ -285,8 +284,8 @@ bool Sheet::isBetweenPieces(std::int64_t column) const {
          std::find(onParabola.begin() + cell, onParabola.end(), true) != onParabola.end();
 }
 
-std::optional<Sheet> findSheet(const Matter& matter) {
-  Cells cells(matter);
+std::optional<Sheet> findSheet(const SolidVoxels& solid) {
+  Cells cells(solid);
   const Tops tops = findTops(cells);
   const auto thickest = static_cast<std::int64_t>(std::ceil(thickestSheet / cells.edge.y()));
   for (const Candidate& candidate : findCandidates(tops, cells.edge.x())) {

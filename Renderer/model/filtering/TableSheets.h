@@ -1,5 +1,5 @@
 #pragma once
-// Sheets of matter that may be the top of a table, in cells of about 2 mm (ScannerTable.h).
+// Sheets of solid voxels that may be the top of a table, in cells of about 2 mm (ScannerTable.h).
 
 #include "model/masks/Distances.h"
 
@@ -12,9 +12,9 @@ namespace fenestra {
 inline constexpr double thickestSheet = 14.0; ///< mm
 inline constexpr double greatestSag = 6.0;    ///< mm, of a sheet along the patient
 
-/// Which voxels are above the level. Columns run across the patient, rows toward the table, slices
+/// Voxels above the level. Columns run across the patient, rows toward the table, slices
 /// along the patient.
-struct Matter {
+struct SolidVoxels {
   static constexpr double level = -500.0; ///< HU
 
   bool at(std::int64_t column, std::int64_t row, std::int64_t slice) const {
@@ -40,7 +40,7 @@ class Sheet {
 public:
   /// Row of the sheet in most slices; -1: the column has none, or is in contact with the patient.
   std::int64_t row(std::int64_t column) const;
-  /// True if no thick matter is near the top of this column, which must have one, in this slice.
+  /// True if no thick body is near the top of this column, which must have one, in this slice.
   bool isFree(std::int64_t column, std::int64_t slice) const;
   bool isOnParabola(std::int64_t column) const {
     return onParabola[static_cast<std::size_t>(column / factor.x())];
@@ -52,13 +52,13 @@ public:
   Size3 size = Size3::Zero();        ///< cells
   std::vector<std::int64_t> tops;    ///< cells, per column; -1: none
   std::vector<bool> onParabola;
-  Marks thick; ///< cells of matter thicker than a sheet
+  Marks thick; ///< cells of bodies thicker than a sheet
 };
 
 /// False if there can be no sheet, on either side of the patient.
-bool mayHaveSheet(const Matter& matter);
+bool mayHaveSheet(const SolidVoxels& solid);
 
 /// The uppermost sheet that can be a table's top; nullopt: none.
-std::optional<Sheet> findSheet(const Matter& matter);
+std::optional<Sheet> findSheet(const SolidVoxels& solid);
 
 } // namespace fenestra
