@@ -37,7 +37,7 @@ TEST_F(FilesCommand, RejectsInputThatIsNotAVolume) {
           {"a PNG called NRRD", {"image.nrrd", "--output", "p.png"}, 3, "image.nrrd:"},
           {"a PNG", {"image.png"}, 3, "image.png:"},
           {"two axes", {"flat.nrrd"}, 3, "flat.nrrd: | 2 axes"},
-          {"four axes", {"frames.nrrd"}, 3, "frames.nrrd: | 4 axes"},
+          {"no such frame", {"frames.nrrd", "--frame", "2"}, 3, "frames.nrrd: | 2"},
           {"no voxels", {"none.nrrd"}, 3, "none.nrrd: sizes: "},
           {"negative size", {"negative.nrrd"}, 3, "negative.nrrd: sizes: "},
       },

@@ -23,8 +23,8 @@ fenestra --quality dr|draft
 fenestra -s lab|labels.nrrd
 fenestra -o loo|look.json
 fenestra tur|turntable
-fenestra turntable --fra|--frames
-fenestra inspect --fra|
+fenestra turntable --frames|--frames
+fenestra inspect --samp|
 fenestra serve --checkp|
 fenestra turntable --surf|
 fenestra --checkp|--checkpoint

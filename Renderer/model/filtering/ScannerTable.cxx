@@ -195,21 +195,30 @@ double removeScannerTable(const ScannerTable& table, const Mask* preserved, Volu
   const auto remove = [&](auto& voxels) {
     using Value = typename std::remove_cvref_t<decltype(voxels)>::value_type;
     const auto emptied = static_cast<Value>(std::max(air, ct.minimum));
+    const auto isSolid = [&](const Size3& voxel) {
+      return static_cast<double>(voxels[linearIndex(voxel, size)]) > SolidVoxels::level;
+    };
     tbb::parallel_for(std::size_t{0}, removed.size(), [&](std::size_t slice) {
-      Size3 voxel;
-      voxel[axes.along] = static_cast<std::int64_t>(slice);
       for (std::size_t column = 0; column < table.tops.size(); ++column) {
         if (table.tops[column] < 0)
           continue;
-        voxel[axes.across] = static_cast<std::int64_t>(column);
-        const std::int64_t top = table.tops[column] + table.offsets[slice];
-        for (std::int64_t row = std::max<std::int64_t>(0, top - halo); row < rows; ++row) {
+        const auto locate = [&](std::int64_t row) {
+          Size3 voxel;
+          voxel[axes.along] = static_cast<std::int64_t>(slice);
+          voxel[axes.across] = static_cast<std::int64_t>(column);
           voxel[axes.down] = table.isDownPositive ? row : rows - 1 - row;
-          Value& value = voxels[linearIndex(voxel, size)];
-          const bool isSolid = static_cast<double>(value) > SolidVoxels::level;
-          if ((row < top && isSolid) || isPreserved(voxel))
+          return voxel;
+        };
+        std::int64_t top = table.tops[column] + table.offsets[slice];
+        if (top >= 2 && top <= rows && isSolid(locate(top - 1)) && !isSolid(locate(top - 2)))
+          --top; // of the sheet, with air above it
+        for (std::int64_t row = std::max<std::int64_t>(0, top - halo); row < rows; ++row) {
+          const Size3 voxel = locate(row);
+          const bool wasSolid = isSolid(voxel);
+          if ((row < top && wasSolid) || isPreserved(voxel))
             continue;
-          removed[slice] += isSolid;
+          removed[slice] += wasSolid;
+          Value& value = voxels[linearIndex(voxel, size)];
           value = std::min(value, emptied);
         }
       }

@@ -33,9 +33,10 @@ struct ScannerTable {
 /// be within 20 degrees of the patient's, and the volume at least 30 mm long.
 std::optional<ScannerTable> findScannerTable(const Volume& ct);
 
-/// Sets what is below the table's top, and what is not above -500 HU within two voxels of it, to
-/// -1000 HU, or to the volume's minimum if that is greater, but for voxels whose centers are in
-/// `preserved` (null: none). Returns the volume of what was above -500 HU, mm^3.
+/// Sets what is below the table's top, a voxel above -500 HU on it with air above, and within two
+/// voxels what is not above -500 HU, to -1000 HU, or to the volume's minimum if that is greater,
+/// but for voxels whose centers are in `preserved` (null: none). Returns the volume of what was
+/// above -500 HU, mm^3.
 double removeScannerTable(const ScannerTable& table, const Mask* preserved, Volume& ct);
 
 } // namespace fenestra
