@@ -25,6 +25,8 @@ std::vector<double> getNumbers(const DataSet& data, const Tag& tag) {
 
 } // namespace
 
+const Tag pixelData(0x7fe0, 0x0010);
+
 std::string getBytes(const DataSet& data, const Tag& tag) {
   const gdcm::ByteValue* value =
       data.FindDataElement(tag) ? data.GetDataElement(tag).GetByteValue() : nullptr;

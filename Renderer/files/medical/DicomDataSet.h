@@ -14,6 +14,8 @@ class Tag;
 
 namespace fenestra {
 
+extern const gdcm::Tag pixelData;
+
 /// The value as stored; empty: missing.
 std::string getBytes(const gdcm::DataSet& data, const gdcm::Tag& tag);
 /// The value without its padding.

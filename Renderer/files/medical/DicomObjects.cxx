@@ -120,8 +120,6 @@ void describeStructureSet(const DataSet& data, ReplyWriter& reply) {
 
 // ---- in the child process: requests
 
-const Tag pixelData(0x7fe0, 0x0010);
-
 std::string describeObject(const std::string& path) {
   gdcm::Reader partial, complete;
   gdcm::Reader* reader = &partial;

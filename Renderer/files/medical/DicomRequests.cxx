@@ -19,7 +19,7 @@ namespace {
 using gdcm::DataSet;
 using gdcm::Tag;
 
-const Tag pixelData(0x7fe0, 0x0010), sharedGroups(0x5200, 0x9229), frameGroups(0x5200, 0x9230);
+const Tag sharedGroups(0x5200, 0x9229), frameGroups(0x5200, 0x9230);
 
 Tag toTag(std::uint32_t tag) {
   return {static_cast<std::uint16_t>(tag >> 16), static_cast<std::uint16_t>(tag & 0xffffU)};

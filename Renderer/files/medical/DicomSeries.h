@@ -23,6 +23,12 @@ struct DicomSlice {
 };
 using DicomSlices = std::vector<DicomSlice>;
 
+/// Center of the first voxel, LPS mm; the header must have it.
+inline Vec3 getPosition(const DicomSlice& slice) {
+  const std::vector<double>& p = slice.header.position;
+  return {p[0], p[1], p[2]};
+}
+
 /// Series, or one of its volumes.
 struct DicomSeries {
   std::string uid, number, description, modality; ///< empty: missing

@@ -25,11 +25,6 @@ using Groups = std::vector<DicomSlices>;
 
 constexpr double samePosition = 1e-3; ///< mm
 
-Vec3 getPosition(const DicomSlice& slice) {
-  const std::vector<double>& p = slice.header.position;
-  return {p[0], p[1], p[2]};
-}
-
 /// True if the slice has what a volume needs. `isComplete` is checked when it is read.
 bool canBePlaced(const DicomSlice& slice) {
   const DicomHeader& h = slice.header;

@@ -49,11 +49,6 @@ void checkSlice(const DicomSlice& slice) {
   checkDicomPixels(slice.path, h);
 }
 
-Vec3 getPosition(const DicomSlice& slice) {
-  const std::vector<double>& p = slice.header.position;
-  return {p[0], p[1], p[2]};
-}
-
 /// Slices of one volume, in the order of their positions.
 struct Stack {
   DicomSlices slices;
