@@ -110,7 +110,7 @@ std::filesystem::path makeDefaultOutput(const std::filesystem::path& input) {
   for (const char* ending : {".gz", ".nii", ".hdr", ".img", ".mgz", ".mgh", ".nrrd", ".nhdr",
                              ".mha", ".mhd", ".mrml", ".mrb"})
     if (name.ends_with(ending))
-      name.resize(name.size() - std::string_view(ending).size());
+      name.erase(name.size() - std::string_view(ending).size());
   if (name.empty())
     throw usageError("--output: missing, and ", input,
                      " gives no name for the image; add --output FILE.png");

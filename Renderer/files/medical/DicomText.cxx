@@ -59,7 +59,7 @@ std::string toUtf8(const std::string& text, const std::string& characterSet) {
   std::size_t left = input.size(), room = output.size();
   const bool isConverted = ::iconv(converter, &from, &left, &to, &room) != std::size_t(-1);
   ::iconv_close(converter);
-  output.resize(output.size() - room);
+  output.erase(output.size() - room);
   return toOneLine(isConverted ? output : text);
 }
 

@@ -66,7 +66,7 @@ std::vector<SegmentInfo> makeSegments(const Paths& files) {
   for (const fs::path& file : files) {
     std::string name = stripExtensions(file).filename().string();
     if (name.ends_with(".seg"))
-      name.resize(name.size() - 4);
+      name.erase(name.size() - 4);
     names.insert(name);
     segments.push_back(
         {.id = name, .name = name, .labelValue = static_cast<std::int32_t>(segments.size() + 1)});
