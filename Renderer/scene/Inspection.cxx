@@ -369,7 +369,8 @@ void addExample(const std::string& volume, const Json& choice, const Json& segme
   };
   for (const Json& segment : report["segments"])
     if (segment["voxels"] > 0 && segment["shown"]) {
-      const bool isUnique = segment["name"] != "" && countNamesakes(segment["name"]) == 1;
+      const bool isUnique = !segment["name"].get_ref<const std::string&>().empty() &&
+                            countNamesakes(segment["name"]) == 1;
       whole["examples"].push_back({{"volume", volume},
                                    {"choice", choice},
                                    {"segmentation", segmentation},

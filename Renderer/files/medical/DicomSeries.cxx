@@ -83,10 +83,12 @@ DicomFolder groupFiles(const Paths& files, const std::string& subject) {
   std::map<std::string, DicomSlices> bySeries;
   for (const Path& file : files)
     for (DicomHeader& header : headers.read(file))
-      if (isDicomSegmentation(header))
+      if (isDicomSegmentation(header)) {
         folder.segmentations.push_back({file, std::move(header)});
-      else if (!header.isComplete || isImage(header))
-        bySeries[getSeriesKey(header)].push_back({file, std::move(header)});
+      } else if (!header.isComplete || isImage(header)) {
+        DicomSlices& slices = bySeries[getSeriesKey(header)];
+        slices.push_back({file, std::move(header)});
+      }
   for (auto& [key, slices] : bySeries)
     std::ranges::move(splitSeries(std::move(slices), subject), std::back_inserter(folder.series));
   for (DicomSeries& series : folder.series)

@@ -120,7 +120,10 @@ private:
 struct KeyValue {
   double number = 0.0;
   std::string text = {};
-  auto operator<=>(const KeyValue&) const = default;
+  bool operator==(const KeyValue&) const = default;
+  bool operator<(const KeyValue& other) const {
+    return std::tie(number, text) < std::tie(other.number, other.text);
+  }
 };
 using GetKey = KeyValue (*)(const DicomHeader&);
 

@@ -14,7 +14,8 @@ std::optional<double> parseTime(const std::string& text) {
   if (!number || !(*number >= 0.0 && *number < 240000.0))
     return std::nullopt;
   const auto whole = static_cast<int>(*number);
-  return whole / 10000 * 3600.0 + whole / 100 % 100 * 60.0 + whole % 100 + (*number - whole);
+  const int hours = whole / 10000, minutes = whole / 100 % 100, seconds = whole % 100;
+  return 3600.0 * hours + 60.0 * minutes + seconds + (*number - whole);
 }
 
 /// Days since 1970 of a date YYYYMMDD.
