@@ -55,7 +55,9 @@ void PreparedScene::prepare() {
   if (r.table != TableRequest::keep)
     m_table.get(read, r.table);
   if (m_table.result() && m_table->table)
-    m_withoutTable.get(read, m_table.result(), m_segments.result());
+    m_withoutTable.get(read, m_table.result(), m_segments.result(),
+                       m_segments.result() ? m_hasVoxels.get(m_segments.result())
+                                           : Handle<std::vector<bool>>());
   const VolumeHandle raw = rawVolume();
   if (r.focusStyle.hasOrganMargin && !r.focus.empty() &&
       isPlausibleModality(Modality::ct, raw->volume))

@@ -6,11 +6,11 @@ namespace fenestra {
 namespace {
 
 /// Union of all segments with voxels; nullopt: there are none.
-std::optional<Mask> uniteSegments(const Segmentation& segmentation, const Grid& volume) {
-  const std::vector<SegmentStatistics> statistics = segmentation.statistics();
+std::optional<Mask> uniteSegments(const Segmentation& segmentation,
+                                  const std::vector<bool>& hasVoxels, const Grid& volume) {
   std::vector<SegmentInfo> present;
-  for (std::size_t i = 0; i < statistics.size(); ++i)
-    if (statistics[i].voxels > 0)
+  for (std::size_t i = 0; i < hasVoxels.size(); ++i)
+    if (hasVoxels[i])
       present.push_back(segmentation.segments()[i]);
   return present.empty() ? std::nullopt : std::optional(segmentation.makeMask(present, volume));
 }
@@ -32,11 +32,13 @@ FoundTable findTable(const VolumeHandle& read, TableRequest request) {
 }
 
 VolumeInput removeTable(const VolumeHandle& read, const Handle<FoundTable>& found,
-                        const Handle<SegmentsInput>& segments) {
+                        const Handle<SegmentsInput>& segments,
+                        const Handle<std::vector<bool>>& hasVoxels) {
   constexpr double cubicMmInMl = 1000.0;
   VolumeInput result = *read;
   const std::optional<Mask> preserved =
-      segments ? uniteSegments(segments->segmentation, result.volume.grid) : std::nullopt;
+      segments ? uniteSegments(segments->segmentation, *hasVoxels, result.volume.grid)
+               : std::nullopt;
   const double removed =
       removeScannerTable(*found->table, preserved ? &*preserved : nullptr, result.volume);
   result.volume.warnings.push_back(

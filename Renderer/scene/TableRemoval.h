@@ -15,8 +15,9 @@ struct FoundTable {
 FoundTable findTable(const VolumeHandle& volume, TableRequest request);
 
 /// The volume without the table, which must be found, but with all voxels of `segments` (null:
-/// none). Adds a warning.
+/// none). `hasVoxels`: from findNonEmpty(). Adds a warning.
 VolumeInput removeTable(const VolumeHandle& volume, const Handle<FoundTable>& table,
-                        const Handle<SegmentsInput>& segments);
+                        const Handle<SegmentsInput>& segments,
+                        const Handle<std::vector<bool>>& hasVoxels);
 
 } // namespace fenestra
