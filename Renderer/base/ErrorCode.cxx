@@ -43,6 +43,7 @@ constexpr auto words = [] {
       {removedTable, "removed-table"},
       {segmentationAsVolume, "segmentation-as-volume"},
       {segmentationRequired, "segmentation-required"},
+      {spacingRequired, "spacing-required"},
       {uncertainTable, "uncertain-table"},
       {unknownForm, "unknown-form"},
       {unknownFrame, "unknown-frame"},

@@ -43,6 +43,7 @@ enum class ErrorCode : std::uint8_t {
   removedTable,             ///< warning: of the scanner
   segmentationAsVolume,
   segmentationRequired, ///< the request has a focus
+  spacingRequired,      ///< of slices that state none
   uncertainTable,       ///< warning: the table of the scanner remains
   unknownForm,          ///< of a NIfTI header
   unknownFrame,

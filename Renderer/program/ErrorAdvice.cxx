@@ -42,6 +42,7 @@ constexpr auto adviceTable = [] {
       {scaleOfPerspectiveCamera, "use --angle, or add --projection orthographic"},
       {segmentationAsVolume, "give its volume, and this file as --segmentation"},
       {segmentationRequired, "give --segmentation FILE"},
+      {spacingRequired, "give --spacing X,Y,Z in mm"},
       {tinyFocus, "use a larger --size, or a --view that frames the focus"},
       {tooManyMaterials, "assign one material to several with --materials FILE"},
       {transparentFocus, "choose another with --transfer or --preset"},
