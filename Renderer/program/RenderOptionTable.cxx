@@ -313,6 +313,10 @@ struct RenderOptionTable {
        ValueSpec::choice(
            scene.volume.niftiForm,
            {{"auto", std::nullopt}, {"qform", NiftiForm::qform}, {"sform", NiftiForm::sform}})},
+      {"strict", "", outputGroup,
+       "Refuses an input of which positions, units, frames or slices would be assumed, "
+       "interpolated or left out",
+       ValueSpec::notInPanel().bind(scene.isStrict, readSwitch), OverrideGroup::process},
       {"layers", "L,...", outputGroup,
        "Channels of .exr: color, depth, clip, albedo, normal, error, samples, and with --denoise "
        "on denoised, expected; of .nrrd: color, depth and denoised (separate files) [all]",

@@ -5,6 +5,7 @@
 #include "scene/SegmentMaterials.h"
 
 #include <algorithm>
+#include <array>
 
 namespace fenestra {
 namespace {
@@ -20,6 +21,17 @@ std::string describeSmoothing(const Mask& focus, const Vec3& native) {
   return concat("segments smoothed by ", toString(focus.smoothing, 3),
                 " mm (label map made on voxels of ", width(0), " x ", width(1), " x ", width(2),
                 " mm); volume of the focus ", percent < 0.0 ? "" : "+", toString(percent, 3), " %");
+}
+
+/// Throws a warning about what a reader assumed as an Error (input).
+void refuseAssumptions(const std::vector<Message>& warnings) {
+  using enum ErrorCode;
+  constexpr std::array assumptions = {
+      assumedForm,        assumedFrame,  assumedGeometry,        assumedUnits,
+      interpolatedSlices, omittedSlices, removedHounsfieldOffset};
+  for (const Message& warning : warnings)
+    if (std::ranges::find(assumptions, warning.code) != assumptions.end())
+      throw Error(ErrorKind::input, warning);
 }
 
 } // namespace
@@ -44,43 +56,49 @@ PreparedScene PreparedScene::withRequest(const RenderRequest& request) const {
 void PreparedScene::prepare() {
   const RenderRequest& r = m_request;
   std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
-  const auto lights =
-      m_namedLights.get(r.lightsName(), r.environment, r.environmentMap); // fails early
+  m_namedLights.get(r.lightsName(), r.environment, r.environmentMap); // fails early
   if (r.transfer)
     m_namedTransfer.get(*r.transfer, m_input);
   const auto read = m_volume.get(m_input, *m_volumeChoice.get(m_input, r.volume, r.segmentation));
+  if (r.isStrict)
+    refuseAssumptions(read->volume.warnings);
+  if (needsLungs(r) && m_lungs.get(read)->input)
+    m_request.focus = {lungSegment};
+  const auto lights = m_namedLights.get(r.lightsName(), r.environment, r.environmentMap);
   const auto settings = m_settings.get(m_input, r.volume.name, r.view.isSceneCamera());
-  if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
+  if (!allSegments() && (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty()))
     m_segments.get(m_input, chooseSegmentation(), read->volume.grid);
+  if (r.isStrict && allSegments())
+    refuseAssumptions(allSegments()->segmentation.warnings());
   if (r.table != TableRequest::keep)
     m_table.get(read, r.table);
   if (m_table.result() && m_table->table)
-    m_withoutTable.get(read, m_table.result(), m_segments.result(),
-                       m_segments.result() ? m_hasVoxels.get(m_segments.result())
-                                           : Handle<std::vector<bool>>());
+    m_withoutTable.get(read, m_table.result(), allSegments(),
+                       allSegments() ? m_hasVoxels.get(allSegments())
+                                     : Handle<std::vector<bool>>());
   const VolumeHandle raw = rawVolume();
   if (r.focusStyle.hasOrganMargin && !r.focus.empty() &&
       isPlausibleModality(Modality::ct, raw->volume))
-    m_trimmed.get(m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus, raw);
+    m_trimmed.get(allSegments(), m_hasVoxels.get(allSegments()), r.focus, raw);
   if (!r.focus.empty())
-    m_hasVoxels.get(m_segments.result());
+    m_hasVoxels.get(allSegments());
   const auto focus = m_focus.get(currentSegments(), m_hasVoxels.result(), r.focus,
                                  r.focusStyle.shaping, raw->volume.grid);
   if (!r.transfer)
     m_sceneTransfer.get(m_input, r.volume.name, {raw->volume.minimum, raw->volume.maximum});
-  if (m_segments.result() &&
+  if (allSegments() &&
       needsContent(raw, m_namedTransfer.result(), m_sceneTransfer.result(), r.transferModality))
-    m_content.get(raw, m_segments.result(), m_hasVoxels.get(m_segments.result()), r.focus);
+    m_content.get(raw, allSegments(), m_hasVoxels.get(allSegments()), r.focus);
   const auto transfer =
       m_transfer.get(raw, m_namedTransfer.result(), m_sceneTransfer.result(), m_content.result(),
                      r.transferModality, r.shift, r.density, r.gradient);
   const VolumeHandle volume = smooth();
-  if (const std::string name = resolveMaterials(m_segments.result()); name != noMaterials) {
+  if (const std::string name = resolveMaterials(allSegments()); name != noMaterials) {
     makeTint(name);
     if (!isTintOnly(*m_plan))
       m_mixture.get(m_plan.result(), currentTint(), transfer);
   }
-  if (!hasSolidFocus())
+  if (!hasSolidFocus() && !m_lungs.result()) // the spaces in lungs are transparent
     m_focusWarnings.get(volume, focus, transfer);
   if (r.view.isAutomatic() && focus->mask)
     m_view.get(raw, settings, focus, transfer);
@@ -155,9 +173,10 @@ std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segment
   const RenderRequest& r = m_request;
   if (r.materials)
     return *r.materials;
-  // One color per segment would hide the signal inside an organ, which is what MR shows.
+  // One color per segment would hide the signal inside an organ, which is what MR shows; and
+  // found lungs are seen by their vessels.
   const bool isTissue = isPlausibleModality(Modality::ct, m_volume->volume);
-  const bool isDefault = isTissue && !r.focus.empty();
+  const bool isDefault = isTissue && !r.focus.empty() && !m_lungs.result();
   return isDefault && hasKnownMaterial(segments->segmentation, r.focus) ? libraryMaterials
                                                                         : noMaterials;
 }
@@ -169,12 +188,12 @@ void PreparedScene::makeTint(const std::string& name) {
     saturation = defaultContextSaturation;
   const auto materials = m_materials.get(name, saturation);
   const bool isAdjusted = materials->hasColorAdjustment();
-  const auto hasVoxels = m_hasVoxels.get(m_segments.result());
+  const auto hasVoxels = m_hasVoxels.get(allSegments());
   if (materials->table.detectsSkin)
     m_skin.get(currentVolume());
   if (isAdjusted && m_transfer->isByModality)
     m_transparent.get(currentSegments(), hasVoxels, r.focus, rawVolume(), m_transfer.result());
-  const auto plan = m_plan.get(m_segments.result(), hasVoxels, materials, r.materialChanges,
+  const auto plan = m_plan.get(allSegments(), hasVoxels, materials, r.materialChanges,
                                isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result(),
                                m_transparent.result());
   const auto segments =
@@ -240,8 +259,11 @@ std::vector<std::string> PreparedScene::choices() const {
   else
     facts.push_back("lights: " +
                     (r.lights && r.lights->starts_with('{') ? "inline JSON" : r.lightsName()));
-  if (m_segments.result() && !m_segments->segmentation.namesSource().empty())
-    facts.push_back("names of segments: " + m_segments->segmentation.namesSource());
+  if (allSegments() && !allSegments()->segmentation.namesSource().empty())
+    facts.push_back("names of segments: " + allSegments()->segmentation.namesSource());
+  if (m_lungs.result() && m_lungs->input)
+    facts.push_back(concat("focus: lungs found in the volume, ", toString(m_lungs->volume / 1e6, 2),
+                           " l with their vessels"));
   for (const SegmentMargin& margin : margins())
     facts.push_back(margin.isApplied
                         ? concat("margin of ", margin.segment, ": mean ", toString(margin.mean, 2),
@@ -273,9 +295,11 @@ std::vector<Message> PreparedScene::warnings() const {
   if (m_table.result())
     append(m_table->warnings, warnings);
   append(m_settings->warnings, warnings);
-  append(m_segments.result() ? m_segments->segmentation.warnings()
-                             : m_input.findUnusedSegmentations(m_request.volume.name),
+  append(allSegments() ? allSegments()->segmentation.warnings()
+                       : m_input.findUnusedSegmentations(m_request.volume.name),
          warnings);
+  if (m_lungs.result())
+    append(m_lungs->warnings, warnings);
   append(m_focus->warnings, warnings);
   append(m_transfer->warnings, warnings);
   if (m_focusWarnings.result())

@@ -4,6 +4,7 @@
 // arguments are equal.
 
 #include "integrator/render/Render.h"
+#include "scene/LungSegment.h"
 #include "scene/SolidFocus.h"
 #include "scene/TableRemoval.h"
 #include "scene/VolumeSmoothing.h"
@@ -51,7 +52,7 @@ public:
   /// Mask of the focus; null without one.
   const Mask* focus() const { return m_focus->mask ? &*m_focus->mask : nullptr; }
   /// Of the segmentation, mm (Segmentation::nativeSpacing); requires a focus or materials.
-  Vec3 nativeSpacing() const { return m_segments->segmentation.nativeSpacing(); }
+  Vec3 nativeSpacing() const { return allSegments()->segmentation.nativeSpacing(); }
   const TransferFunction& transfer() const { return m_transfer->function; }
   /// Source of the transfer function (TransferChoice::source).
   const std::string& transferName() const { return m_transfer->source; }
@@ -99,9 +100,13 @@ private:
   VolumeHandle smooth();
   VolumeHandle currentVolume() const;
   VolumeHandle rawVolume() const; ///< without the table of the scanner, but not smoothed
+  /// Segments as read or, in a request without any, found; null: none.
+  const Handle<SegmentsInput>& allSegments() const {
+    return m_lungs.result() && m_lungs->input ? m_lungs->input : m_segments.result();
+  }
   /// Segments with their margins.
   Handle<SegmentsInput> currentSegments() const {
-    return m_trimmed.result() ? m_trimmed->input : m_segments.result();
+    return m_trimmed.result() ? m_trimmed->input : allSegments();
   }
   const Handle<Tint>& currentTint() const {
     return m_adjustedTint.result() ? m_adjustedTint.result() : m_tint.result();
@@ -112,8 +117,8 @@ private:
   }
   template <typename Self>
   static auto stages(Self& s) {
-    return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volumeChoice, s.m_volume, s.m_table,
-                    s.m_withoutTable, s.m_settings, s.m_segments, s.m_trimmed, s.m_focus,
+    return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volumeChoice, s.m_volume, s.m_lungs,
+                    s.m_table, s.m_withoutTable, s.m_settings, s.m_segments, s.m_trimmed, s.m_focus,
                     s.m_sceneTransfer, s.m_hasVoxels, s.m_content, s.m_transfer, s.m_smoothed,
                     s.m_islands, s.m_materials, s.m_skin, s.m_transparent, s.m_separated, s.m_plan,
                     s.m_labelWeights, s.m_tint, s.m_interfaces, s.m_tintContrast, s.m_adjustedTint,
@@ -128,6 +133,7 @@ private:
   CachedStage<&findTransfer> m_namedTransfer; ///< unused without --transfer
   CachedStage<&Input::chooseForm> m_volumeChoice;
   CachedStage<&Input::volume> m_volume;
+  CachedStage<&findLungSegment> m_lungs;    ///< unused unless needsLungs()
   CachedStage<&findTable> m_table;          ///< unused if the table stays
   CachedStage<&removeTable> m_withoutTable; ///< unused if there is no table
   CachedStage<&Input::settings> m_settings;

@@ -95,8 +95,9 @@ inline constexpr const char* libraryMaterials = "library";
 enum class TableRequest { automatic, keep, remove };
 
 struct RenderRequest {
-  std::filesystem::path input;                  ///< a volume, a DICOM folder, or a Slicer scene
-  VolumeChoice volume = {};                     ///< if there are several
+  std::filesystem::path input; ///< a volume, a DICOM folder, or a Slicer scene
+  VolumeChoice volume = {};    ///< if there are several
+  bool isStrict = false;       ///< an input about which anything is assumed is an error
   std::optional<std::string> segmentation = {}; ///< node of the scene, or a file
   std::optional<std::string> labels = {};       ///< names of label values (LabelSearch.h)
   std::vector<std::string> focus = {};          ///< ids, names or label values

@@ -181,7 +181,7 @@ TEST_F(SlicerCommand, XmlHasOnlyElementsThatSlicerAllows) {
 }
 
 TEST_F(SlicerCommand, XmlDescribesEveryOptionOfTheHelp) {
-  Names described = {"help", "version", "quiet", "verbose", "paper"};
+  Names described = {"help", "version", "quiet", "verbose", "paper", "strict"};
   const pugi::xml_document document = description();
   for (const pugi::xpath_node& option : document.select_nodes("//longflag"))
     described.insert(option.node().text().get());
