@@ -57,19 +57,34 @@ std::vector<SegmentInfo> selectFocus(const OptionValues& given,
   return selected.empty() ? segments : selected;
 }
 
+/// Selectors of some of `all` segments, each once: ids, or names where several have the id.
+std::vector<std::string> makeSelectors(const std::vector<SegmentInfo>& chosen,
+                                       const std::vector<SegmentInfo>& all) {
+  std::vector<std::string> selectors;
+  for (const SegmentInfo& segment : chosen) {
+    const bool isUnique = std::ranges::count(all, segment.id, &SegmentInfo::id) == 1;
+    const std::string& selector = isUnique ? segment.id : segment.name;
+    if (std::ranges::find(selectors, selector) == selectors.end())
+      selectors.push_back(selector);
+  }
+  return selectors;
+}
+
 InputChoice makeChoice(const OptionValues& given) {
   return {given.text("volume"), given.text("segmentation"), given.text("labels")};
 }
 
-/// Segments, by id, that have a voxel in the segmentation.
+/// Segments, by id and name, that have a voxel in the segmentation.
 std::vector<SegmentInfo> selectNonEmpty(std::vector<SegmentInfo> segments,
                                         const Segmentation& segmentation) {
-  std::set<std::string> ids;
+  std::set<std::pair<std::string, std::string>> present;
   const std::vector<SegmentStatistics> statistics = segmentation.statistics();
   for (std::size_t i = 0; i < statistics.size(); ++i)
-    if (statistics[i].voxels > 0)
-      ids.insert(segmentation.segments()[i].id);
-  std::erase_if(segments, [&](const SegmentInfo& one) { return !ids.contains(one.id); });
+    if (const SegmentInfo& one = segmentation.segments()[i]; statistics[i].voxels > 0)
+      present.emplace(one.id, one.name);
+  std::erase_if(segments, [&](const SegmentInfo& one) {
+    return !present.contains({one.id, one.name});
+  });
   return segments;
 }
 
@@ -90,7 +105,9 @@ OrganPreset choosePreset(const OptionValues& given, const Input& input,
     presets.push_back(findOrganPreset(own));
   const std::vector<SegmentInfo> candidates = selectFocus(given, names->segments);
   const auto listNonEmpty = [&] {
-    return selectNonEmpty(candidates, input.segments(makeChoice(given)).segmentation);
+    InputChoice choice = makeChoice(given);
+    choice.focus = makeSelectors(candidates, names->segments);
+    return selectNonEmpty(candidates, input.segments(choice).segmentation);
   };
   return findMatchingPreset(
       presets, candidates, names->source, listNonEmpty, [&](Modality modality) {
@@ -108,8 +125,8 @@ void addFocus(const OrganPreset& preset, const SegmentNames& names, OptionValues
     throw inputError(names.source, "--preset ", preset.name, ": none of its segments found (only ",
                      joinSegmentNames(names.segments),
                      "); add --focus A,B,..., or use another preset");
-  for (const SegmentInfo& segment : focus)
-    values.add("focus", replaceAll(segment.id, ",", "\\,"));
+  for (const std::string& selector : makeSelectors(focus, names.segments))
+    values.add("focus", replaceAll(selector, ",", "\\,"));
 }
 
 // ---- options of a scene

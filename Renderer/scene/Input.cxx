@@ -52,6 +52,25 @@ std::vector<const MrmlNode*> findNodesOfFocus(MrmlScene& scene, const InputChoic
                              : findFocusNodes(scene, choice.focus, choice.labels);
 }
 
+/// Segmentations that are searched first, if they are several and none is chosen; else empty.
+SegmentationNodes findAlternatives(const MrmlScene& scene, const InputChoice& choice) {
+  if (!choice.segmentation)
+    for (const SegmentationNodes& nodes : listSegmentations(scene.document))
+      if (!nodes.empty())
+        return nodes.size() > 1 ? nodes : SegmentationNodes();
+  return {};
+}
+
+/// Names of the segments of several nodes, together.
+SegmentNames readNames(MrmlScene& scene, const SegmentationNodes& nodes,
+                       const std::optional<std::string>& labels) {
+  SegmentNames names{concat(scene.document.source(), ": ", nodes.size(), " segmentations"), {}};
+  for (const MrmlNode* node : nodes)
+    for (SegmentInfo& segment : readSceneSegmentInfos(scene, *node, labels))
+      names.segments.push_back(std::move(segment));
+  return names;
+}
+
 /// Segments of at least one node, together.
 Segmentation readNodes(MrmlScene& scene, const std::vector<const MrmlNode*>& nodes,
                        const Grid* volume, const std::optional<std::string>& labels) {
@@ -227,6 +246,8 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& given) const 
   if (!m_state->isScene)
     return readSegmentNames(choice);
   return m_state->withScene([&](MrmlScene& scene) {
+    if (const SegmentationNodes several = findAlternatives(scene, choice); !several.empty())
+      return std::optional(readNames(scene, several, choice.labels));
     const bool hasSegmentation = std::ranges::any_of(scene.document.nodes(), isSegmentation);
     const ScenePlan plan = makePlan(scene, choice, hasSegmentation);
     if (!plan.segmentation)

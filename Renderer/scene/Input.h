@@ -100,7 +100,8 @@ public:
   /// renderings that follow the window and level of the slice views.
   SceneTransfer transfer(const std::optional<std::string>& volume,
                          const std::array<double, 2>& range) const;
-  /// Empty without a segmentation.
+  /// Empty without a segmentation. Of several in a scene, of which none is chosen, those of all
+  /// visible ones, else of all.
   std::optional<SegmentNames> segmentNames(const InputChoice& choice) const;
   /// Segmentation for a volume on the given grid; without a grid, closed surfaces get their own.
   SegmentsInput segments(const InputChoice& choice, const std::optional<Grid>& volume = {}) const;

@@ -54,6 +54,29 @@ Image readResult() {
   return readImage(kneeFolder() / "preset.exr");
 }
 
+/// Of several visible segmentations, whose segments share ids, the preset finds the one that has
+/// its segment.
+TEST(PresetsCommand, PresetFindsItsSegmentInSeveralSegmentations) {
+  const TemporaryFolder& folder = kneeFolder();
+  const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nspace: "
+                             "left-posterior-superior\nsizes: 4 4 4\nspace directions: (1,0,0) "
+                             "(0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: raw\n";
+  folder.write("several.nrrd", header + "\n" + std::string(64, 'a'));
+  std::string nodes = R"(<VolumeArchetypeStorage id="sv" fileName="several.nrrd"/>
+    <Volume id="v" name="V" references="storage:sv;"/>)";
+  for (const std::string name : {"Liver", "Stone"}) {
+    folder.write(name + ".seg.nrrd", header + "Segment0_ID:=S\nSegment0_Name:=" + name +
+                                         "\nSegment0_LabelValue:=1\n\n" + std::string(64, '\1'));
+    nodes += "<SegmentationStorage id=\"s" + name + "\" fileName=\"" + name +
+             ".seg.nrrd\"/><Segmentation id=\"" + name + "\" name=\"" + name +
+             "\" references=\"storage:s" + name + ";\"/>";
+  }
+  folder.write("several.mrml", "<MRML>" + nodes + "</MRML>");
+  for (const char* preset : {"liver", "auto"})
+    EXPECT_TRUE(hasLine(renderEcho({"--preset", preset}, "several.mrml"), "focus: Liver"))
+        << preset;
+}
+
 TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
   const auto lines =
       renderEcho(addSegments({"--preset", writeFullPreset(), "--stats-json", "s.json"}));

@@ -117,6 +117,18 @@ TEST_F(SeveralSegmentations, FocusFindsTheNodeOfItsSegments) {
                         (folder / "b.seg.nrrd").string()}));
 }
 
+TEST_F(SeveralSegmentations, OffersTheNamesOfAllVisibleOnes) {
+  const auto list = [&](const InputChoice& choice) {
+    const std::optional<SegmentNames> found = input.segmentNames(choice);
+    std::vector<std::string> names;
+    for (const SegmentInfo& segment : found->segments)
+      names.push_back(segment.name);
+    return names;
+  };
+  EXPECT_EQ(list({}), (std::vector<std::string>{"Liver", "Tumour"}));
+  EXPECT_EQ(list({.segmentation = "c"}), std::vector<std::string>{"Spleen"});
+}
+
 TEST_F(SeveralSegmentations, AmbiguousAndUnknownSegmentsAreRefused) {
   expectRefused(folder / "s.mrml", "ambiguous-segmentation | S1 | a | b", [&] { read({"S1"}); });
   expectRefused(folder / "s.mrml", "ambiguous-segmentation | Heart", [&] { read({"Heart"}); });
