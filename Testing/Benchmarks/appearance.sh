@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Measures the appearance of images of real data against bounds (README.md, Appearance). Each image has the program's
-# defaults but for data, focus, view, size and samples.
+# defaults but for data, focus, view and size.
 # usage: bash Testing/Benchmarks/appearance.sh [NAME...] [-- ARGUMENT...]
 #        bash Testing/Benchmarks/appearance.sh --case VOLUME SEGMENTATION FOCUS [-- ARGUMENT...]
 #   NAME: scenes to measure [all]; FOCUS: names or label values, separated by commas
@@ -46,7 +46,7 @@ measure() {
     echo "$name: SKIPPED, not found: $3" >&2
     return 0
   fi
-  set -- "${@:4}" --size 640x640 --samples 12
+  set -- "${@:4}" --size 640x640
   while [ $# -gt 0 ]; do
     [[ " ${given[*]} " == *" $1"[\ =]* ]] || arguments+=("$1" "$2")
     shift 2
