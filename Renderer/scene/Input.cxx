@@ -1,6 +1,7 @@
 #include "scene/Input.h"
 
 #include "base/Error.h"
+#include "files/medical/DicomReader.h"
 #include "files/medical/DicomSeries.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/medical/NiftiForms.h"
@@ -29,6 +30,32 @@ std::optional<SegmentNames> readSegmentNames(const InputChoice& choice) {
   if (!choice.segmentation)
     return std::nullopt;
   return SegmentNames{*choice.segmentation, readSegmentInfos(*choice.segmentation, choice.labels)};
+}
+
+/// Segmentation files that have all segments of a focus.
+std::vector<std::filesystem::path> selectByFocus(std::vector<std::filesystem::path> files,
+                                                 const std::vector<std::string>& focus) {
+  std::erase_if(files, [&](const std::filesystem::path& file) {
+    const std::vector<SegmentInfo> segments = readSegmentInfos(file);
+    return !std::ranges::all_of(focus, [&](const std::string& selector) {
+      return std::ranges::any_of(
+          segments, [&](const SegmentInfo& segment) { return isSelected(segment, selector); });
+    });
+  });
+  return files;
+}
+
+/// Warning about a DICOM segmentation of another frame of reference than the series'.
+std::vector<Message> checkFrameOfReference(const std::string& file, const DicomSeries& series) {
+  const std::vector<DicomHeader> headers =
+      isDicomFile(file) ? DicomReader().readHeaders(file) : std::vector<DicomHeader>();
+  const std::string& own = series.frames.front().front().header.frameOfReference;
+  if (headers.empty() || own.empty() || headers.front().frameOfReference.empty() ||
+      headers.front().frameOfReference == own)
+    return {};
+  return {makeMessage(ErrorCode::assumedGeometry, file,
+                      "is placed in another frame of reference than the volume, as of another scan "
+                      "or patient; its positions are used as they are")};
 }
 
 InputFiles listSegmentationFiles(const std::filesystem::path& path) {
@@ -119,6 +146,8 @@ const std::filesystem::path& Input::path() const {
 }
 
 bool Input::hasSeveralSegmentations() const {
+  if (const DicomFolder* const folder = dicom())
+    return folder->segmentations.size() > 1;
   const MrmlDocument* opened = document();
   return opened && std::ranges::count_if(opened->nodes(), isSegmentation) > 1;
 }
@@ -163,7 +192,10 @@ std::optional<std::string> Input::segmentationFile(const InputChoice& choice) co
   if (!folder)
     return choice.segmentation;
   const DicomSeries series = chooseSeries(folder->series, choice.volume, path().string());
-  const auto found = folder->segmentationsOf(series);
+  auto found = folder->segmentationsOf(series);
+  if (found.size() > 1 && !choice.focus.empty())
+    if (auto having = selectByFocus(found, choice.focus); having.size() == 1)
+      found = std::move(having);
   if (found.size() > 1)
     throw inputError(ErrorCode::ambiguousSegmentation, path(), "has ", found.size(),
                      " segmentations of this series: ",
@@ -266,8 +298,11 @@ SegmentsInput Input::segments(const InputChoice& given, const std::optional<Grid
     if (!choice.segmentation)
       throw inputError(ErrorCode::segmentationRequired, path(),
                        "has no segmentation that refers to the series");
-    return makeSegments(readSegmentation(*choice.segmentation, grid, choice.labels),
-                        listSegmentationFiles(*choice.segmentation));
+    Segmentation segmentation = readSegmentation(*choice.segmentation, grid, choice.labels);
+    if (const DicomFolder* const folder = dicom())
+      segmentation.addWarnings(checkFrameOfReference(
+          *choice.segmentation, chooseSeries(folder->series, choice.volume, path().string())));
+    return makeSegments(std::move(segmentation), listSegmentationFiles(*choice.segmentation));
   };
   if (!m_state->isScene)
     return readFile();

@@ -75,7 +75,7 @@ public:
   explicit Input(std::filesystem::path path);
 
   const std::filesystem::path& path() const;
-  /// True if the input is a scene with several segmentations or label maps.
+  /// True if the input is a scene or DICOM folder with several segmentations.
   bool hasSeveralSegmentations() const;
   /// The stored scene; null if the input is not a Slicer scene.
   const MrmlDocument* document() const;
@@ -83,7 +83,8 @@ public:
   MrmlScene* scene() const;
 
   /// The chosen segmentation; without one, the only SEG or RTSTRUCT beside a DICOM series that
-  /// refers to it. Throws Error (input) if there are several.
+  /// refers to it, or of several the only one with all segments of the focus. Throws Error (input)
+  /// if there are several.
   std::optional<std::string> segmentationFile(const InputChoice& choice) const;
   /// What the folder, or the folder of the DICOM file, holds; null if the input is neither.
   const DicomFolder* dicom() const;

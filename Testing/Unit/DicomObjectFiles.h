@@ -19,6 +19,7 @@ struct SegFile {
   double statedStep = 0.0, thickness = 0.0; ///< 0: not stated
   bool isShared = true;                     ///< orientation and spacing, among the frames
   std::string characterSet = "";
+  std::string frameOfReference = ""; ///< uid
 
   struct Segment {
     unsigned number;
@@ -134,6 +135,7 @@ inline std::string makeSegFile(const SegFile& file,
       makeText(0x00080016, "UI",
                isLabelMap ? "1.2.840.10008.5.1.4.1.1.66.7" : "1.2.840.10008.5.1.4.1.1.66.4")};
   data.push_back(makeText(0x00080060, "CS", "SEG"));
+  data.push_back(makeText(0x00200052, "UI", file.frameOfReference));
   data.push_back(makeShorts(0x00280002, {1}));
   data.push_back(makeText(0x00280004, "CS", "MONOCHROME2"));
   data.push_back(makeText(0x00280008, "IS", std::to_string(file.frames.size())));

@@ -49,8 +49,12 @@ TEST(LabelSearch, RequestedTableNamesItsValuesOnly) {
   const Segmentation named = readSegmentation(map, nullptr, table.string());
   EXPECT_EQ(findName(named, 5), "liver");
   EXPECT_EQ(findName(named, 7), "Segment_7");
+  ASSERT_EQ(named.warnings().size(), 1u);
+  expectMessage(named.warnings()[0], "unmatched-labels | 7");
   EXPECT_EQ(named.namesSource(), table.string());
-  EXPECT_EQ(findName(readSegmentation(map, nullptr, "totalsegmentator1"), 7), "aorta");
+  const Segmentation organs = readSegmentation(map, nullptr, "totalsegmentator1");
+  EXPECT_EQ(findName(organs, 7), "aorta");
+  EXPECT_TRUE(organs.warnings().empty());
   EXPECT_EQ(findName(readSegmentation(map, nullptr, "totalsegmentator2"), 7), "pancreas");
   EXPECT_EQ(named.makeFocusMask({"liver"}, named.grid()).count, 1);
   const auto other = folder.write("other.csv", "1,a\n2,b\n");
@@ -103,6 +107,32 @@ TEST(LabelSearch, TableBesideTheMapIsUsedIfItMatches) {
   EXPECT_EQ(findName(readSegmentation(map), 5), "Segment_5");
   folder.write("map.csv", "damaged");
   EXPECT_EQ(readSegmentation(map).warnings().size(), 2u);
+}
+
+TEST(LabelSearch, ColorTableOfSlicersExportIsFound) {
+  const TemporaryFolder folder;
+  const auto map = folder.write("Segmentation-label.nii", makeLabelMap());
+  folder.write("Segmentation-label_ColorTable.ctbl",
+               "0 Background 0 0 0 0\n5 Right upper lobe 1 2 3 255\n7 b 4 5 6 255\n");
+  EXPECT_EQ(findName(readSegmentation(map), 5), "Right upper lobe");
+}
+
+/// A tool that loses the header leaves the position of an array.
+TEST(LabelSearch, ALostHeaderGivesAWarning) {
+  const TemporaryFolder folder;
+  NiftiFile file;
+  file.sformCode = 1;
+  file.samples[3] = 5;
+  file.setSform(Affine(Mat3::Diagonal({-1.0, -1.0, 1.0}), Vec3::Zero()));
+  const auto lost = folder.write("lost.nii", file.bytes());
+  const Size3 size(3, 4, 2);
+  const Affine map(Mat3::Diagonal({2.0, 2.0, 2.0}), {-70.0, -80.0, 5.0});
+  const Grid volume(size, map);
+  const auto warn = [&](const Grid& grid) { return readSegmentation(lost, &grid).warnings(); };
+  ASSERT_EQ(warn(volume).size(), 1u);
+  expectMessage(warn(volume)[0], "assumed-geometry");
+  EXPECT_TRUE(warn(Grid({4, 4, 2}, map)).empty()) << "another size";
+  EXPECT_TRUE(warn(readSegmentation(lost).grid()).empty()) << "the volume is there, too";
 }
 
 /// As programs write that give each structure a file.

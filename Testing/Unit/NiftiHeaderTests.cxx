@@ -137,6 +137,17 @@ TEST(NiftiHeader, UnitsScaleGeometry) {
   }
 }
 
+TEST(NiftiHeader, MissingSpacingWarns) {
+  const TemporaryFolder folder;
+  NiftiFile file;
+  file.qformCode = 1;
+  file.pixdim[3] = 0.0F;
+  const Volume volume = readVolume(folder.write("v.nii", file.bytes()));
+  EXPECT_EQ(volume.grid.spacing().z(), 1.0);
+  ASSERT_EQ(volume.warnings.size(), 1u);
+  expectMessage(volume.warnings[0], "assumed-geometry | 1 mm");
+}
+
 TEST(NiftiHeader, MissingFormsWarn) {
   const TemporaryFolder folder;
   const Volume volume = readVolume(folder.write("v.nii", NiftiFile().bytes()));

@@ -162,9 +162,14 @@ TEST(SegmentationReader, ReadsOverlappingLayers) {
 }
 
 /// MITK lists its labels in JSON, in one group per layer.
-TEST(SegmentationReader, ReadsTheLabelGroupsOfMitk) {
+class MitkLabels : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Keys, MitkLabels,
+                         ::testing::Values("org_mitk_multilabel_segmentation_labelgroups",
+                                           "org.mitk.multilabel.segmentation.labelgroups"));
+
+TEST_P(MitkLabels, AreReadFromTheirGroups) {
   const TemporaryFolder folder;
-  constexpr const char* key = "org_mitk_multilabel_segmentation_labelgroups";
+  const char* const key = GetParam();
   FileGeometry geometry{.components = 2};
   geometry.fields[key] = R"([{"labels": [{"name": "liver", "value": 1,
       "color": {"type": "ColorProperty", "value": [0.5, 0.25, 1]}}, {"name": "cyst", "value": 2}]},

@@ -280,6 +280,9 @@ void readNiftiGeometry(const NiftiFields& fields, const VolumeChoice& choice, Ni
                      "has a number that is not finite or "
                      "exceeds 1e9 mm; write it again");
   const Vec3 pixdim = readVoxelSize(fields);
+  if (sform <= 0 && fields.triple(at.pixdim, 1).cwiseAbs().minCoeff() == 0.0)
+    header.warnings.push_back(makeMessage(ErrorCode::assumedGeometry, fields.path(),
+                                          "has no spacing along an axis: 1 mm is assumed"));
   const auto form = choice.niftiForm;
   if (form && (form == NiftiForm::qform ? qform : sform) <= 0)
     throw inputError(ErrorCode::unknownForm, fields.path(), "has no ",

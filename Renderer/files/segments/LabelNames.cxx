@@ -78,12 +78,18 @@ std::optional<Rgb> parseColor(const std::vector<std::string>& parts, std::size_t
   return color;
 }
 
-/// Slicer writes spaces in names as underscores, which is ambiguous; names stay as written.
+/// Slicer writes spaces in names as underscores, which is ambiguous; names stay as written. Some
+/// tools write spaces: the name then ends before the four numbers of the color.
 void readColorTable(const std::string& text, TableBuilder& table) {
+  constexpr std::size_t fewest = 6; // value, name, color
   forEachLine(text, [&](const std::string& place, std::string_view line) {
     const std::vector<std::string> parts = splitWords(line);
-    table.add(place, parseInteger(parts[0]), parts.size() > 1 ? parts[1] : "",
-              parseColor(parts, 2));
+    std::size_t end = std::min<std::size_t>(parts.size(), 2);
+    if (parts.size() > fewest && parseColor(parts, parts.size() - 4))
+      end = parts.size() - 4;
+    const std::vector<std::string> words(parts.begin() + 1,
+                                         parts.begin() + static_cast<std::ptrdiff_t>(end));
+    table.add(place, parseInteger(parts[0]), join(words, " "), parseColor(parts, end));
   });
 }
 

@@ -20,8 +20,8 @@ struct SiblingTable {
 std::vector<SiblingTable> findSiblingTables(const std::filesystem::path& path) {
   std::vector<SiblingTable> tables;
   const std::filesystem::path stem = stripExtensions(path);
-  for (const char* extension : {".ctbl", ".label", ".json", ".csv", ".tsv"})
-    tables.push_back({stem.string() + extension, false});
+  for (const char* ending : {".ctbl", ".label", ".json", ".csv", ".tsv", "_ColorTable.ctbl"})
+    tables.push_back({stem.string() + ending, false}); // the last one by Slicer's export
   tables.push_back({path.parent_path() / "seg_labels.json", true});
   std::erase_if(tables, [](const SiblingTable& table) { return !fileExists(table.file); });
   return tables;
@@ -108,12 +108,19 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
   }
   constexpr std::size_t maxListed = 8;
   FoundNames found = readRequestedNames(path, extensions, *requested);
-  if (!values.empty() && countNamed(found.names, values) == 0)
+  std::vector<std::int32_t> unnamed;
+  std::ranges::copy_if(values, std::back_inserter(unnamed),
+                       [&](std::int32_t value) { return !found.names.contains(value); });
+  const std::string list = join(
+      unnamed, ", ", [](std::int32_t value) { return concat(value); }, maxListed);
+  if (!values.empty() && unnamed.size() == values.size())
     throw inputError(ErrorCode::unmatchedLabels, path, "the label table ", sanitize(*requested),
-                     " names none of the label values (",
-                     join(
-                         values, ", ", [](std::int32_t value) { return concat(value); }, maxListed),
-                     ")");
+                     " names none of the label values (", list, ")");
+  if (!unnamed.empty())
+    found.warnings.push_back(
+        makeMessage(ErrorCode::unmatchedLabels, path, "the label table ", sanitize(*requested),
+                    " does not name all label values (not ", list,
+                    "); if it belongs to another label map, segments have wrong names"));
   return found;
 }
 

@@ -52,6 +52,12 @@ Error makeUnknownError(const std::string& source, const std::string& selector,
 
 } // namespace
 
+bool isSelected(const SegmentInfo& segment, std::string_view selector) {
+  const std::string bare(trim(selector));
+  return segment.id == bare || segment.name == bare ||
+         segment.labelValue == parseNumber<std::int32_t>(bare);
+}
+
 std::string formatSegments(const std::vector<SegmentInfo>& segments) {
   const auto format = [](const SegmentInfo& segment) {
     const std::string id = sanitize(segment.id);

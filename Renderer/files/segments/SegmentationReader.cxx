@@ -158,19 +158,16 @@ private:
   std::string m_prefix;
 };
 
-constexpr const char* mitkGroups = "org_mitk_multilabel_segmentation_labelgroups";
-
-/// Reads MITK's segments: JSON, a list of groups (layers), each with its labels.
-std::vector<SegmentInfo> readMitkSegments(const std::string& text, const std::string& source,
-                                          std::size_t layerCount) {
-  const std::string place = concat(source, ": ", mitkGroups);
+/// Reads MITK's segments from a field: JSON, a list of groups (layers), each with its labels.
+std::vector<SegmentInfo> readMitkSegments(const std::string& field, const std::string& text,
+                                          const std::string& source, std::size_t layerCount) {
+  const std::string place = concat(source, ": ", field);
   const nlohmann::json document = parseJson(text, place);
   std::vector<SegmentInfo> segments;
   std::size_t layer = 0;
   for (const JsonNode& group : JsonNode(document, place).elements()) {
     if (layer == layerCount)
-      throw fieldError(source, mitkGroups, "has more groups than the file has layers, ",
-                       layerCount);
+      throw fieldError(source, field, "has more groups than the file has layers, ", layerCount);
     for (const JsonNode& label : group.at("labels").elements()) {
       const auto value = static_cast<std::int32_t>(label.at("value").number(1.0, 65535.0));
       SegmentInfo info{.id = concat("Segment_", layer, '_', value),
@@ -196,8 +193,10 @@ std::vector<SegmentInfo> readSegments(const Fields& fields, const std::string& s
       throw fieldError(source, field,
                        "is a fractional labelmap, which is not supported; export the "
                        "segmentation in Slicer as a binary labelmap (.seg.nrrd)");
-  if (const auto groups = fields.find(mitkGroups); groups != fields.end())
-    return readMitkSegments(groups->second, source, layerCount);
+  for (const char* field : {"org_mitk_multilabel_segmentation_labelgroups",
+                            "org.mitk.multilabel.segmentation.labelgroups"})
+    if (const auto groups = fields.find(field); groups != fields.end())
+      return readMitkSegments(field, groups->second, source, layerCount);
   std::vector<SegmentInfo> segments;
   while (segments.size() < maxSegments) {
     const SegmentFields segmentFields(fields, source, concat("Segment", segments.size(), '_'));
@@ -206,6 +205,24 @@ std::vector<SegmentInfo> readSegments(const Fields& fields, const std::string& s
     segments.push_back(segmentFields.readSegment(segments.size(), layerCount));
   }
   return segments;
+}
+
+/// Warning about a label map that has as many voxels as the volume, but the position of an array: a
+/// tool has lost its header.
+std::vector<Message> findLostHeader(const std::string& source, const Grid& grid,
+                                    const Grid* volume) {
+  constexpr double tolerance = 1e-6; // mm
+  const Affine& map = grid.indexToWorld;
+  if (!volume || grid.size != volume->size || map.translation().norm() > tolerance ||
+      (grid.worldCorner(7) - volume->worldCorner(7)).norm() < 0.5)
+    return {};
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(std::abs(map.linear()(axis, axis)) - 1.0) > tolerance ||
+        std::abs(map.linear().col(axis).norm() - 1.0) > tolerance)
+      return {};
+  return {makeMessage(ErrorCode::assumedGeometry, source,
+                      "has the size of the volume, but spacing 1 and origin 0, as after the loss "
+                      "of its header; segments are shown where it says")};
 }
 
 } // namespace
@@ -309,6 +326,7 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
   segmentation.setNamesSource(std::move(found.source));
   segmentation.addWarnings(image.warnings);
   segmentation.addWarnings(found.warnings);
+  segmentation.addWarnings(findLostHeader(source, segmentation.grid(), reference));
   return segmentation;
 }
 

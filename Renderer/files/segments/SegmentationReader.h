@@ -29,6 +29,9 @@ struct SegmentInfo {
   void parseTerminology(std::string_view tags);
 };
 
+/// True if `selector`, without blanks around, is the segment's id, name or label value.
+bool isSelected(const SegmentInfo& segment, std::string_view selector);
+
 /// Lists ids and names for a message, at most 12.
 std::string formatSegments(const std::vector<SegmentInfo>& segments);
 

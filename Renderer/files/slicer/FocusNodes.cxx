@@ -10,12 +10,6 @@
 namespace fenestra {
 namespace {
 
-bool isSelected(const SegmentInfo& segment, const std::string& selector) {
-  const std::string bare(trim(selector));
-  return segment.id == bare || segment.name == bare ||
-         segment.labelValue == parseNumber<std::int32_t>(bare);
-}
-
 class FocusSearch {
 public:
   FocusSearch(MrmlScene& scene, const std::optional<std::string>& labels)
