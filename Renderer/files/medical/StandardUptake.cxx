@@ -90,9 +90,6 @@ void convertToSuv(DicomSlices& slices, const std::string& name, std::vector<Mess
     slice.header.slope *= *factor;
     slice.header.intercept *= *factor;
   }
-  warnings.push_back(makeMessage(ErrorCode::assumedUnits, name,
-                                 "PET values are SUV by body weight (g/ml), which are Bq/ml times ",
-                                 toString(*factor)));
 }
 
 } // namespace fenestra

@@ -11,7 +11,7 @@ namespace fenestra {
 std::optional<double> computeSuvFactor(const DicomHeader& header, std::string& missing);
 
 /// Changes slope and intercept of the slices so that voxels are SUV. If the first slice's header
-/// does not suffice, leaves them. A warning says which.
+/// does not suffice, leaves them with a warning.
 void convertToSuv(DicomSlices& slices, const std::string& name, std::vector<Message>& warnings);
 
 } // namespace fenestra
