@@ -12,6 +12,7 @@
 #include <cstring>
 #include <ctime>
 #include <fcntl.h>
+#include <fstream>
 #include <linux/landlock.h>
 #include <poll.h>
 #include <spawn.h>
@@ -278,6 +279,17 @@ std::vector<double> ReplyReader::numbers() {
   if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }))
     throw std::runtime_error("reply contains a number that is not finite");
   return numbers;
+}
+
+void limitMemory(std::uint64_t bytes) {
+  std::uint64_t pages = 0; // of address space
+  std::ifstream("/proc/self/statm") >> pages;
+  rlimit both{};
+  if (hasSanitizer || pages == 0 || ::getrlimit(RLIMIT_AS, &both) != 0)
+    return;
+  const auto used = static_cast<rlim_t>(pages) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
+  both.rlim_cur = std::min<rlim_t>(both.rlim_max, used + bytes);
+  ::setrlimit(RLIMIT_AS, &both);
 }
 
 void serveSandbox(int argc, char** argv) {

@@ -98,6 +98,10 @@ private:
   std::string_view m_bytes;
 };
 
+/// In a child's handler: lets the process allocate at most `bytes` more, within its job's limit,
+/// until the next call; then allocations fail. No effect under sanitizers.
+void limitMemory(std::uint64_t bytes);
+
 /// In a child: handles requests until the parent closes the connection or dies, and does not
 /// return. In any other process: enables SandboxedReader::request and returns.
 void serveSandbox(int argc, char** argv);

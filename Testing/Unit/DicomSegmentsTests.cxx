@@ -7,6 +7,7 @@
 #include "MedicalFiles.h"
 
 #include <random>
+#include <sys/resource.h>
 
 namespace fenestra::DicomSegmentsTests {
 namespace {
@@ -269,5 +270,51 @@ TEST(DicomSegments, RejectsWhatItCannotPlace) {
   const Path other = folder.write("mr.dcm", image);
   expectRefused(other, "unsupported-file | SEG", [&] { readSegmentation(other); });
 }
+
+// ---- memory
+
+/// Replaces the number of an element of type US, explicit little endian.
+void setShort(std::string& bytes, unsigned element, unsigned value) {
+  const std::string tag = {0x28, 0, static_cast<char>(element), 0, 'U', 'S', 2, 0};
+  const std::size_t at = bytes.find(tag) + tag.size();
+  bytes[at] = static_cast<char>(value & 255U);
+  bytes[at + 1] = static_cast<char>(value >> 8);
+}
+
+double getPeakMegabytes(int who) {
+  rusage usage{};
+  ::getrusage(static_cast<__rusage_who_t>(who), &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+TEST(DicomSegments, DamagedSizesTakeNoMemory) {
+  const TemporaryFolder folder;
+  constexpr double most = 100.0; // MB, for files of 2 kB
+  const double before = getPeakMegabytes(RUSAGE_SELF);
+  SegFile file{.statedStep = 1.0, .segments = {{1, "empty"}, {2, "two"}}, .frames = {{2, 0.0}}};
+  std::string bytes = makeSegFile(file);
+  for (const unsigned element : {0x10U, 0x11U})
+    setShort(bytes, element, 40000);
+  const Path large = folder.write("large.dcm", bytes);
+  expectRefused(large, "damaged-file: PixelData", [&] { readSegmentation(large); });
+  file = {.columns = 100, .rows = 40, .statedStep = 1.0, .frames = {{1, 0.0}, {1, 60000.0}}};
+  const Path sparse = folder.write("sparse.dcm", makeSegFile(file));
+  expectRefused(sparse, "limit-exceeded | 240004000", [&] { readSegmentation(sparse); });
+  EXPECT_LT(getPeakMegabytes(RUSAGE_SELF) - before, most);
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__clang__) // sanitizers take memory of their own
+TEST(DicomSegments, DeclaredLengthsTakeNoMemoryInTheChild) {
+  const TemporaryFolder folder;
+  const double before = getPeakMegabytes(RUSAGE_CHILDREN);
+  std::string bytes = makeSegFile({.frames = {{1, 0.0}}});
+  const std::string element("\x62\0\x51\0OB\0\0\0\0\0\x70", 12); // 1.9 GB
+  bytes.insert(bytes.find(std::string("\x00\x52\x30\x92SQ", 6)), element);
+  const Path path = folder.write("s.dcm", bytes);
+  expectRefused(path, "damaged-file", [&] { readSegmentation(path); });
+  EXPECT_LT(getPeakMegabytes(RUSAGE_CHILDREN), std::max(before, 400.0));
+}
+#endif
+
 } // namespace
 } // namespace fenestra::DicomSegmentsTests

@@ -97,6 +97,23 @@ TEST(Sandbox, ChildCannotExceedItsMemoryLimit) {
   SandboxedReader child(misbehavingJob);
   EXPECT_EQ(child.request("allocate", 2 * memoryLimit), "");
 }
+
+constexpr std::uint64_t requestLimit = 1 << 26;
+
+/// Allocates as many bytes as the request says, within a limit of its own.
+const SandboxJob limitedJob("test-limited", [](const std::string& bytes) {
+  limitMemory(requestLimit);
+  return std::to_string(std::string(std::stoull(bytes), 'x').size());
+});
+
+TEST(Sandbox, ARequestCanHaveALowerLimit) {
+  SandboxedReader child(limitedJob);
+  for (int i = 0; i < 3; ++i) { // a request that fails does not affect the next
+    EXPECT_EQ(child.request(std::to_string(2 * requestLimit), maxBytes), "");
+    const std::string half = std::to_string(requestLimit / 2);
+    EXPECT_EQ(child.request(half, maxBytes), half);
+  }
+}
 #endif
 
 /// Lists the actions that the child is permitted, for the test below.

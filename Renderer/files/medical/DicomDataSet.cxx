@@ -2,6 +2,7 @@
 
 #include "base/Text.h"
 #include "files/medical/DicomReader.h"
+#include "io/Sandbox.h"
 
 #include <gdcmFile.h>
 #include <gdcmSequenceOfItems.h>
@@ -71,6 +72,14 @@ DicomItems::DicomItems(const DataSet& data, const Tag& tag) {
 bool isDeflated(const gdcm::File& file) {
   return file.GetHeader().GetDataSetTransferSyntax() ==
          gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
+}
+
+void limitMemoryByFile(const std::filesystem::path& path) {
+  constexpr std::uint64_t least = std::uint64_t{1} << 28;
+  constexpr std::uint64_t ratio = 2500; // twice what deflate reaches
+  std::error_code missing;
+  const std::uint64_t bytes = std::filesystem::file_size(path, missing);
+  limitMemory(missing ? least : least + bytes * ratio);
 }
 
 } // namespace fenestra

@@ -2,6 +2,7 @@
 // Elements of a DICOM data set that GDCM has read. For code that runs in a sandboxed child.
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,5 +44,9 @@ private:
 
 /// True for the deflated transfer syntax, whose data sets GDCM reads only as a whole.
 bool isDeflated(const gdcm::File& file);
+
+/// In a child: limits memory to what a file of this size may need. GDCM allocates any length that
+/// an element declares.
+void limitMemoryByFile(const std::filesystem::path& path);
 
 } // namespace fenestra

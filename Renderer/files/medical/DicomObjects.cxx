@@ -81,7 +81,10 @@ void describeFrames(const DataSet& data, ReplyWriter& reply) {
   }
 }
 
-void describeSegmentation(const DataSet& data, ReplyWriter& reply) {
+void describeSegmentation(const gdcm::File& file, ReplyWriter& reply) {
+  const DataSet& data = file.GetDataSet();
+  const auto& syntax = file.GetHeader().GetDataSetTransferSyntax();
+  reply.put(syntax.IsEncapsulated() || isDeflated(file) ? "1" : "0");
   reply.put(getText(data, {0x0062, 0x0001}));
   for (const Tag& tag : {Tag(0x0028, 0x0010), Tag(0x0028, 0x0011), Tag(0x0028, 0x0100)})
     reply.put(getShorts(data, tag));
@@ -121,6 +124,7 @@ void describeStructureSet(const DataSet& data, ReplyWriter& reply) {
 // ---- in the child process: requests
 
 std::string describeObject(const std::string& path) {
+  limitMemoryByFile(path);
   gdcm::Reader partial, complete;
   gdcm::Reader* reader = &partial;
   partial.SetFileName(path.c_str());
@@ -139,7 +143,7 @@ std::string describeObject(const std::string& path) {
   if (uid == "1.2.840.10008.5.1.4.1.1.66.4" || uid == "1.2.840.10008.5.1.4.1.1.66.7") {
     reply.put(segmentationKind);
     reply.put(getText(data, {0x0008, 0x0005}));
-    describeSegmentation(data, reply);
+    describeSegmentation(file, reply);
   } else if (uid == "1.2.840.10008.5.1.4.1.1.481.3") {
     reply.put(structureSetKind);
     reply.put(getText(data, {0x0008, 0x0005}));
@@ -205,6 +209,7 @@ struct FramesRequest {
 std::string makeFramesReply(const FramesRequest& part, const std::string& path) {
   static std::string read, pixels;
   if (read != path) {
+    limitMemoryByFile(path);
     pixels = readPixels(path);
     read = path;
   }
@@ -242,7 +247,9 @@ std::size_t takeCount(ReplyReader& reply) {
 }
 
 DicomSegmentation takeSegmentation(ReplyReader& reply, const std::string& characterSet) {
-  DicomSegmentation object{.type = reply.text()};
+  DicomSegmentation object;
+  object.isCompressed = reply.text() == "1";
+  object.type = reply.text();
   object.rows = toInteger(reply.numbers());
   object.columns = toInteger(reply.numbers());
   object.bits = toInteger(reply.numbers());

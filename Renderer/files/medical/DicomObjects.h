@@ -39,8 +39,9 @@ struct DicomFrame {
 struct DicomSegmentation {
   std::string type; ///< "BINARY", "FRACTIONAL" or "LABELMAP"
   std::int32_t rows = 0, columns = 0;
-  std::int32_t bits = 0; ///< of a pixel, without gaps: 1, 8 or 16
-  double maximum = 0.0;  ///< MaximumFractionalValue; 0: missing
+  std::int32_t bits = 0;     ///< of a pixel, without gaps: 1, 8 or 16
+  double maximum = 0.0;      ///< MaximumFractionalValue; 0: missing
+  bool isCompressed = false; ///< the pixels are, or the whole file
   std::vector<DicomSegment> segments = {};
   std::vector<DicomFrame> frames = {};
 };

@@ -194,6 +194,13 @@ std::string DicomReader::readVoxels(const Path& path, const DicomHeader& h) {
                    "is damaged or truncated; export the series again");
 }
 
+std::uint64_t countPixelBytes(const Path& path, bool isCompressed) {
+  // Lossless codecs compress an empty image to almost nothing, and other images at most 1000 to 1.
+  constexpr std::uint64_t ratio = 1000, emptyImageBytes = 1 << 24;
+  const std::uint64_t stored = std::filesystem::file_size(path);
+  return isCompressed ? std::max(emptyImageBytes, stored * ratio) : stored;
+}
+
 void checkDicomPixels(const Path& path, const DicomHeader& h) {
   const auto refuse = [&](const char* field, const char* what) {
     throw fieldError(path, field, what);
@@ -208,12 +215,7 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
                                                    "Slicer as .nrrd and use that");
   if (!std::isfinite(h.slope) || !std::isfinite(h.intercept))
     refuse("RescaleSlope or RescaleIntercept", "is not one finite number; export the series again");
-  // Lossless codecs compress an empty image to almost nothing, and other images at most 1000 to 1.
-  constexpr std::uint64_t ratio = 1000, emptyImageBytes = 1 << 24;
-  const std::uint64_t stored = std::filesystem::file_size(path);
-  const std::uint64_t maxBytes =
-      h.isCompressed ? std::max(emptyImageBytes, stored * ratio) : stored;
-  if (imageBytes(h) > maxBytes / h.frames)
+  if (imageBytes(h) > countPixelBytes(path, h.isCompressed) / h.frames)
     refuse("PixelData",
            "is shorter than Rows, Columns and BitsAllocated say; export the series again");
 }

@@ -101,6 +101,9 @@ private:
 /// for a malformed reply.
 std::vector<DicomHeader> parseDicomHeaders(std::string_view reply);
 
+/// Most bytes of pixels that a file can hold.
+std::uint64_t countPixelBytes(const std::filesystem::path& path, bool isCompressed);
+
 /// Throws Error (input) unless the header describes a supported image that fits in its file.
 void checkDicomPixels(const std::filesystem::path& path, const DicomHeader& header);
 

@@ -119,6 +119,7 @@ void putFrames(const DataSet& data, ReplyWriter& reply) {
 }
 
 std::string makeHeaderReply(const std::string& path) {
+  limitMemoryByFile(path);
   const HeaderFile read(path);
   const gdcm::TransferSyntax& syntax = read.file().GetHeader().GetDataSetTransferSyntax();
   gdcm::MediaStorage kind;
@@ -175,6 +176,7 @@ std::string makeVoxelsReply(std::uint32_t frame, const std::string& path) {
   if (read != path) {
     read.clear();
     decoded = {};
+    limitMemoryByFile(path);
     decoded = decodeFile(path);
     read = path;
   }

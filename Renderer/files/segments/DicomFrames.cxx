@@ -13,8 +13,8 @@ namespace {
 
 using Path = std::filesystem::path;
 
-constexpr double maxLength = 1e9;     ///< mm, as in the other formats
-constexpr double maxSlices = 65536.0; ///< limits memory for hostile positions
+constexpr double maxLength = 1e9; ///< mm, as in the other formats
+constexpr double maxSlices = 65536.0;
 constexpr const char* exportAgain = "export the segmentation again";
 
 struct Place {
@@ -233,18 +233,25 @@ void checkPixels(const Path& path, const DicomSegmentation& object) {
   if (!isBinary && !isLabelMap && object.type != "FRACTIONAL")
     throw fieldError(path, "SegmentationType", "\"", sanitize(object.type),
                      "\" is not supported; export a binary segmentation");
+  const auto bits = static_cast<std::uint64_t>(object.rows) *
+                    static_cast<std::uint64_t>(object.columns) *
+                    static_cast<std::uint64_t>(object.bits);
   const bool isSupported =
       object.bits == 8 || (isLabelMap ? object.bits == 16 : isBinary && object.bits == 1);
   if (!isSupported)
     throw fieldError(path, "BitsAllocated", "is ", object.bits, ", which is not supported for ",
                      object.type, "; ", exportAgain);
+  const std::uint64_t maxBits = 8 * countPixelBytes(path, object.isCompressed);
+  if (bits > maxBits / std::max<std::uint64_t>(1, object.frames.size()))
+    throw inputError(ErrorCode::damagedFile, concat(path, ": PixelData"),
+                     "is shorter than Rows, Columns and frames say; ", exportAgain);
 }
 
 /// Stored values of frames.
 class FrameSource {
 public:
-  FrameSource(DicomObjectReader& files, const Path& path, const DicomSegmentation& object)
-      : m_files(files), m_path(path), m_object(object) {}
+  FrameSource(const FrameReader& readFrames, const DicomSegmentation& object)
+      : m_readFrames(readFrames), m_object(object) {}
 
   std::uint64_t pixels() const {
     return static_cast<std::uint64_t>(m_object.rows) * static_cast<std::uint64_t>(m_object.columns);
@@ -261,7 +268,7 @@ public:
       for (end = begin + 1;
            end < frames.size() && end - begin < maxFrames && frames[end] == frames[end - 1] + 1;)
         ++end;
-      const std::string bytes = m_files.readFrames(m_path, m_object, frames[begin], end - begin);
+      const std::string bytes = m_readFrames(frames[begin], end - begin);
       const std::uint64_t offset = frames[begin] * pixels() * bits % 8;
       for (std::size_t i = begin; i < end; ++i)
         use(frames[i], [&, start = (i - begin) * pixels()](std::uint64_t pixel) {
@@ -278,8 +285,7 @@ private:
     return m_object.bits == 8 ? byte(at) : byte(2 * at) | byte(2 * at + 1) << 8;
   }
 
-  DicomObjectReader& m_files;
-  const Path& m_path;
+  const FrameReader& m_readFrames;
   const DicomSegmentation& m_object;
 };
 
@@ -346,10 +352,11 @@ Labels readLabelMap(FrameSource& source, const DicomSegmentation& object, const 
 
 /// Labels of a binary or fractional segmentation; sets the segments' layers.
 LabelLayers readLayers(FrameSource& source, const Path& path, const DicomSegmentation& object,
-                       const Stack& stack, std::vector<SegmentInfo>& segments) {
+                       const Stack& stack, std::int64_t maxLabels,
+                       std::vector<SegmentInfo>& segments) {
   const std::int32_t threshold = findThreshold(path, object);
   auto framesOfNumber = groupFrames(path, object);
-  LabelLayers layers(stack.grid.size, path.string());
+  LabelLayers layers(stack.grid.size, path.string(), maxLabels);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     std::vector<VoxelRun> runs;
     source.forEach(framesOfNumber[object.segments[i].number],
@@ -362,26 +369,37 @@ LabelLayers readLayers(FrameSource& source, const Path& path, const DicomSegment
   return layers;
 }
 
-void checkSize(const Path& path, const Grid& grid) {
-  constexpr std::int64_t maxVoxels = std::int64_t{1} << 31;
-  if (grid.voxelCount() > maxVoxels)
+/// Most labels of all layers. Slices between planes are not in the file, so that they are limited
+/// by its size and its pixels: a damaged file must not take memory that it can hardly describe.
+std::int64_t countMaxLabels(const Path& path, const DicomSegmentation& object) {
+  constexpr std::uint64_t labelsOfByte = 1 << 14, labelsOfPixel = 16;
+  const std::uint64_t pixels = std::uint64_t{1} * static_cast<std::uint64_t>(object.rows) *
+                               static_cast<std::uint64_t>(object.columns) * object.frames.size();
+  const std::uint64_t most = std::max(labelsOfByte * std::filesystem::file_size(path),
+                                      labelsOfPixel * pixels); // checkPixels: no overflow
+  return static_cast<std::int64_t>(std::min(most, std::uint64_t{1} << 31));
+}
+
+void checkSize(const Path& path, const Grid& grid, std::int64_t maxLabels) {
+  if (grid.voxelCount() > maxLabels)
     throw inputError(ErrorCode::limitExceeded, path, "has ", grid.voxelCount(),
-                     " voxels, more than 2^31; crop the segmentation");
+                     " voxels, more than ", maxLabels, " for its size; crop the segmentation");
 }
 
 } // namespace
 
-Segmentation makeFrameLabels(DicomObjectReader& files, const Path& path,
+Segmentation makeFrameLabels(const FrameReader& readFrames, const Path& path,
                              const DicomSegmentation& object, std::vector<SegmentInfo> segments,
                              const Grid* reference) {
   checkPixels(path, object);
   const Stack stack = makeStack(path.string(), object, reference);
-  checkSize(path, stack.grid);
-  FrameSource source(files, path, object);
+  const std::int64_t maxLabels = countMaxLabels(path, object);
+  checkSize(path, stack.grid, maxLabels);
+  FrameSource source(readFrames, object);
   std::size_t layerCount = 1;
   Labels labels;
   if (object.type != "LABELMAP") {
-    LabelLayers layers = readLayers(source, path, object, stack, segments);
+    LabelLayers layers = readLayers(source, path, object, stack, maxLabels, segments);
     layerCount = layers.count();
     labels = layers.takeInterleaved();
   } else if (object.bits == 8) {

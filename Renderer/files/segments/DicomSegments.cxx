@@ -112,15 +112,23 @@ DicomObject readObject(DicomObjectReader& files, const std::filesystem::path& pa
 
 } // namespace
 
+std::vector<SegmentInfo> makeDicomInfos(const DicomObject& object, const std::string& source) {
+  return std::visit([&](const auto& one) { return makeInfos(one, source); }, object);
+}
+
 Segmentation readDicomSegments(const std::filesystem::path& path, const Grid* reference) {
   const std::string source = path.string();
   DicomObjectReader files;
   const DicomObject object = readObject(files, path);
   try {
-    if (const auto* const frames = std::get_if<DicomSegmentation>(&object))
-      return makeFrameLabels(files, path, *frames, makeInfos(*frames, source), reference);
-    const auto& contours = std::get<DicomStructureSet>(object);
-    return makeContourLabels(source, contours, makeInfos(contours, source), reference);
+    std::vector<SegmentInfo> infos = makeDicomInfos(object, source);
+    if (const auto* const contours = std::get_if<DicomStructureSet>(&object))
+      return makeContourLabels(source, *contours, std::move(infos), reference);
+    const auto& frames = std::get<DicomSegmentation>(object);
+    const auto readFrames = [&](std::uint64_t first, std::uint64_t count) {
+      return files.readFrames(path, frames, first, count);
+    };
+    return makeFrameLabels(readFrames, path, frames, std::move(infos), reference);
   } catch (const std::bad_alloc&) {
     throw inputError(ErrorCode::outOfMemory, source,
                      "does not fit into memory; give fewer segments");
@@ -129,8 +137,7 @@ Segmentation readDicomSegments(const std::filesystem::path& path, const Grid* re
 
 std::vector<SegmentInfo> readDicomSegmentInfos(const std::filesystem::path& path) {
   DicomObjectReader files;
-  return std::visit([&](const auto& object) { return makeInfos(object, path.string()); },
-                    readObject(files, path));
+  return makeDicomInfos(readObject(files, path), path.string());
 }
 
 } // namespace fenestra

@@ -16,6 +16,8 @@
 #include "files/medical/DicomObjects.h"
 #include "files/segments/SegmentationReader.h"
 
+#include <functional>
+
 namespace fenestra {
 
 /// Reads the segments with their labels; `reference` is the volume's grid, if there is one. Ids are
@@ -27,8 +29,15 @@ std::vector<SegmentInfo> readDicomSegmentInfos(const std::filesystem::path& path
 
 // ---- its parts
 
-/// Labels of a SEG. `segments`: one for each of the object's, in order.
-Segmentation makeFrameLabels(DicomObjectReader& files, const std::filesystem::path& path,
+/// Segments of an object of the file `source`. Throws Error (input).
+std::vector<SegmentInfo> makeDicomInfos(const DicomObject& object, const std::string& source);
+
+/// Bits of `count` frames from frame `first` on, as DicomObjectReader::readFrames returns them.
+using FrameReader = std::function<std::string(std::uint64_t first, std::uint64_t count)>;
+
+/// Labels of a SEG. `segments`: one for each of the object's, in order. Throws Error (input) unless
+/// the file at `path` can hold the pixels that the object declares.
+Segmentation makeFrameLabels(const FrameReader& readFrames, const std::filesystem::path& path,
                              const DicomSegmentation& object, std::vector<SegmentInfo> segments,
                              const Grid* reference);
 

@@ -12,10 +12,9 @@ std::size_t LabelLayers::add(const std::vector<VoxelRun>& runs, Label label) {
   while (layer < m_count && !isFree(layer, runs))
     ++layer;
   if (layer == m_count) {
-    constexpr std::int64_t maxLabels = std::int64_t{1} << 31;
     std::int64_t labels = 0;
     if (__builtin_mul_overflow(m_size.prod(), static_cast<std::int64_t>(m_count + 1), &labels) ||
-        labels > maxLabels)
+        labels > m_maxLabels)
       throw inputError(ErrorCode::limitExceeded, m_source,
                        "has segments that overlap in too many layers; export the segmentation in "
                        "Slicer as a binary labelmap (.seg.nrrd)");

@@ -14,13 +14,17 @@ class LabelLayers {
 public:
   using Label = std::int16_t;
 
-  /// For a label map of `size` voxels; `source` is the file name in messages.
-  LabelLayers(const Size3& size, std::string source) : m_size(size), m_source(std::move(source)) {}
+  static constexpr std::int64_t mostLabels = std::int64_t{1} << 31;
+
+  /// For a label map of `size` voxels, with at most `maxLabels` labels in all layers; `source` is
+  /// the file name in messages.
+  LabelLayers(const Size3& size, std::string source, std::int64_t maxLabels = mostLabels)
+      : m_size(size), m_maxLabels(maxLabels), m_source(std::move(source)) {}
 
   std::size_t count() const { return m_count; }
 
   /// Adds a segment to the first layer in which it overlaps no other; returns that layer. Throws
-  /// Error (input) if all layers together exceed 2^31 labels.
+  /// Error (input) if all layers together exceed the limit.
   std::size_t add(const std::vector<VoxelRun>& runs, Label label);
 
   /// Moves the labels out, with a voxel's layers adjacent.
@@ -31,6 +35,7 @@ private:
   bool isFree(std::size_t layer, const std::vector<VoxelRun>& runs);
 
   Size3 m_size;
+  std::int64_t m_maxLabels;
   std::string m_source;
   std::size_t m_count = 0;
   LargeArray<Label> m_labels; ///< layer after layer
