@@ -145,6 +145,43 @@ TEST(StructureSet, SkippedSlicesAreInterpolated) {
   expectMessage(irregular.warnings()[0], "assumed-geometry | one | 6 mm");
 }
 
+/// Dice coefficient of a sphere around the origin and of its planes of contours, each of which
+/// holds for half of the distance to the next; at points 1 mm apart.
+double computeSampledDice(double radius, double step, double phase) {
+  std::int64_t common = 0, both = 0;
+  for (int z = -30; z <= 30; ++z) {
+    const double plane = step * (std::floor(z / step - phase + 0.5) + phase);
+    for (int y = -30; y <= 30; ++y)
+      for (int x = -30; x <= 30; ++x) {
+        const double across = x * x + y * y;
+        const bool expected = across + z * z < radius * radius,
+                   found = across + plane * plane < radius * radius;
+        common += expected && found;
+        both += expected + found;
+      }
+  }
+  return 2.0 * static_cast<double>(common) / static_cast<double>(both);
+}
+
+TEST(StructureSet, CoarseContoursAreBetterThanTheShapeSampledOnThem) {
+  const TemporaryFolder folder;
+  constexpr double radius = 24.4;
+  const Grid volume = makeVolume(Vec3::Zero(), Mat3::Identity(), {1, 1, 1});
+  for (const double step : {2.0, 3.0, 4.0, 5.0})
+    for (const double phase : {0.0, 0.5}) { // of the first plane, in steps from the center
+      std::vector<Contour> contours;
+      for (int i = -20; i <= 20; ++i)
+        if (const double z = step * (i + phase); std::abs(z) < radius - 0.01)
+          contours.push_back(
+              makeCircle(Vec3(0, 0, z), Mat3::Identity(), std::sqrt(radius * radius - z * z)));
+      const Segmentation read = readSegmentation(
+          folder.write("s.dcm", makeStructureFile({{.contours = contours}})), &volume);
+      const double dice = computeDice(read, Vec3::Zero(), 0.0, radius);
+      EXPECT_GE(dice, computeSampledDice(radius, step, phase)) << step << ' ' << phase;
+      EXPECT_GE(dice, step == 2.0 ? 0.995 : 0.98) << step << ' ' << phase;
+    }
+}
+
 TEST(StructureSet, PartsFarApartStayApart) {
   const TemporaryFolder folder;
   std::vector<Contour> contours;
