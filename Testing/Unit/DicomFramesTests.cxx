@@ -1,8 +1,10 @@
-// Multi-frame DICOM files, and values of PET.
+// Multi-frame DICOM files, stored values of voxels, and values of PET.
 
 #include "Approx.h"
 #include "DicomSliceFiles.h"
 #include "files/medical/StandardUptake.h"
+
+#include <random>
 
 namespace fenestra::DicomFramesTests {
 namespace {
@@ -84,6 +86,61 @@ TEST(DicomFrames, FramesBeyondTheFileAreRefused) {
                  {makeShared(Mat3::Identity())});
   const Path file = folder.write("frames", bytes.substr(0, bytes.size() - 14));
   fenestra::expectRefused(file, "damaged-file: PixelData", [&] { read(folder.path()); });
+}
+
+// ---- voxels
+
+/// Stored value by DICOM PS3.5, 8.1.1: the bits up to HighBit, with the sign of the highest.
+double decode(const DicomHeader& h, std::uint32_t word) {
+  double value = 0.0;
+  for (unsigned bit = 0; bit < h.bitsStored; ++bit)
+    if (word >> (h.highBit + 1 - h.bitsStored + bit) & 1U)
+      value += std::exp2(bit) * (h.isSigned && bit + 1 == h.bitsStored ? -1.0 : 1.0);
+  return h.slope * value + h.intercept;
+}
+
+TEST(DicomVoxels, StoredBitsAreExtendedAndRescaled) {
+  std::mt19937 random(3); // NOLINT: reproducible
+  for (const auto& [bits, stored, highBit] : std::vector<std::array<unsigned, 3>>{{8, 8, 7},
+                                                                                  {8, 5, 6},
+                                                                                  {16, 16, 15},
+                                                                                  {16, 12, 11},
+                                                                                  {16, 12, 15},
+                                                                                  {16, 1, 0},
+                                                                                  {32, 32, 31},
+                                                                                  {32, 20, 24}})
+    for (const unsigned isSigned : {0U, 1U})
+      for (const auto& [slope, intercept] : std::vector<std::pair<double, double>>{{1, 0},
+                                                                                   {1, -1024},
+                                                                                   {-1, 100},
+                                                                                   {2, 0.5},
+                                                                                   {0.25, 0},
+                                                                                   {40000, 7},
+                                                                                   {1e12, -1},
+                                                                                   {0, 3}}) {
+        DicomHeader h;
+        h.rows = 4;
+        h.columns = 16;
+        h.bits = bits;
+        h.bitsStored = stored;
+        h.highBit = highBit;
+        h.isSigned = isSigned;
+        h.slope = slope;
+        h.intercept = intercept;
+        std::string voxels;
+        std::vector<double> expected;
+        for (int i = 0; i < 64; ++i) {
+          const auto word = static_cast<std::uint32_t>(i == 0 ? ~0U : random());
+          voxels.append(reinterpret_cast<const char*>(&word), bits / 8);
+          expected.push_back(decode(h, word));
+        }
+        SCOPED_TRACE(concat(bits, ' ', stored, ' ', highBit, ' ', toString(slope)));
+        std::visit(
+            [&](const auto& scalars) {
+              EXPECT_EQ(std::vector<double>(scalars.begin(), scalars.end()), expected);
+            },
+            rescaleVoxels(h, voxels));
+      }
 }
 
 // ---- PET

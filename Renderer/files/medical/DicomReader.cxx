@@ -3,11 +3,15 @@
 #include "base/Error.h"
 #include "files/medical/DicomFields.h"
 #include "files/medical/DicomText.h"
+#include "files/medical/SampleStore.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <fstream>
+#include <limits>
 
 namespace fenestra {
 namespace {
@@ -69,17 +73,54 @@ void placeFrames(std::vector<DicomHeader>& frames) {
 
 // ---- voxels
 
-/// Extracts the stored bits of a voxel, sign-extended if signed.
-std::int64_t extractStoredValue(const DicomHeader& h, const std::string& voxels,
-                                std::size_t voxel) {
-  const std::size_t size = h.bits / 8;
-  std::uint64_t bits = 0;
-  for (std::size_t byte = size; byte-- > 0;)
-    bits = bits << 8 | static_cast<unsigned char>(voxels[voxel * size + byte]);
-  const std::uint64_t mask = (std::uint64_t{1} << h.bitsStored) - 1;
-  const std::int64_t sign = h.isSigned ? std::int64_t{1} << (h.bitsStored - 1) : 0;
-  const auto value = static_cast<std::int64_t>(bits >> (h.highBit + 1 - h.bitsStored) & mask);
-  return (value ^ sign) - sign;
+/// Stored values of voxels of `Word`s; `Stored` has their width and sign.
+template <typename Stored, typename Word>
+std::vector<Stored> extractVoxels(const DicomHeader& h, const std::string& voxels) {
+  constexpr unsigned width = std::numeric_limits<std::make_unsigned_t<Stored>>::digits;
+  const unsigned left = width - 1 - h.highBit, right = width - h.bitsStored;
+  std::vector<Stored> stored(std::size_t{h.rows} * h.columns);
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    Word word;
+    std::memcpy(&word, voxels.data() + i * sizeof word, sizeof word);
+    stored[i] = static_cast<Stored>(static_cast<Stored>(word << left) >> right);
+  }
+  return stored;
+}
+
+template <typename Number, typename Stored>
+std::vector<Number> rescale(const std::vector<Stored>& stored, Number slope, Number intercept) {
+  std::vector<Number> scalars(stored.size());
+  std::ranges::transform(stored, scalars.begin(), [=](Stored x) {
+    if constexpr (std::is_floating_point_v<Number>)
+      return slope * static_cast<Number>(x) + intercept;
+    else // modulo 2^32, which the compiler narrows
+      return static_cast<Number>(static_cast<std::uint32_t>(slope) * static_cast<std::uint32_t>(x) +
+                                 static_cast<std::uint32_t>(intercept));
+  });
+  return scalars;
+}
+
+template <typename Stored, typename Word>
+RescaledVoxels rescaleStored(const DicomHeader& h, const std::string& voxels) {
+  const std::vector<Stored> stored = extractVoxels<Stored, Word>(h, voxels);
+  const SampleStats stats = computeStats(std::span(stored));
+  const double first = h.slope * stats.minimum + h.intercept,
+               last = h.slope * stats.maximum + h.intercept;
+  const auto fits = [&]<typename Number>(Number) {
+    constexpr double lowest = std::numeric_limits<Number>::min(),
+                     highest = std::numeric_limits<Number>::max();
+    return std::min(first, last) >= lowest && std::max(first, last) <= highest &&
+           h.slope == std::trunc(h.slope) && h.intercept == std::trunc(h.intercept) &&
+           std::abs(h.slope) <= highest && std::abs(h.intercept) <= highest;
+  };
+  const auto make = [&]<typename Number>(Number) {
+    return rescale(stored, static_cast<Number>(h.slope), static_cast<Number>(h.intercept));
+  };
+  if (fits(std::int16_t()))
+    return make(std::int16_t());
+  if (fits(std::int32_t()))
+    return make(std::int32_t());
+  return make(double());
 }
 
 } // namespace
@@ -220,11 +261,16 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
            "is shorter than Rows, Columns and BitsAllocated say; export the series again");
 }
 
-std::vector<double> rescaleVoxels(const DicomHeader& h, const std::string& voxels) {
-  std::vector<double> scalars(std::size_t{h.rows} * h.columns);
-  for (std::size_t i = 0; i < scalars.size(); ++i)
-    scalars[i] = h.slope * static_cast<double>(extractStoredValue(h, voxels, i)) + h.intercept;
-  return scalars;
+RescaledVoxels rescaleVoxels(const DicomHeader& h, const std::string& voxels) {
+  static_assert(std::endian::native == std::endian::little);
+  if (h.bits == 8)
+    return h.isSigned ? rescaleStored<std::int16_t, std::uint8_t>(h, voxels)
+                      : rescaleStored<std::uint16_t, std::uint8_t>(h, voxels);
+  if (h.bits == 16)
+    return h.isSigned ? rescaleStored<std::int16_t, std::uint16_t>(h, voxels)
+                      : rescaleStored<std::uint16_t, std::uint16_t>(h, voxels);
+  return h.isSigned ? rescaleStored<std::int32_t, std::uint32_t>(h, voxels)
+                    : rescaleStored<std::uint32_t, std::uint32_t>(h, voxels);
 }
 
 } // namespace fenestra

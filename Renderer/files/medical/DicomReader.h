@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace fenestra {
@@ -107,7 +108,11 @@ std::uint64_t countPixelBytes(const std::filesystem::path& path, bool isCompress
 /// Throws Error (input) unless the header describes a supported image that fits in its file.
 void checkDicomPixels(const std::filesystem::path& path, const DicomHeader& header);
 
+/// Integers if slope and intercept are, as of a CT, and the results fit.
+using RescaledVoxels =
+    std::variant<std::vector<std::int16_t>, std::vector<std::int32_t>, std::vector<double>>;
+
 /// Applies slope and intercept to the result of readVoxels. Requires checkDicomPixels(header).
-std::vector<double> rescaleVoxels(const DicomHeader& header, const std::string& voxels);
+RescaledVoxels rescaleVoxels(const DicomHeader& header, const std::string& voxels);
 
 } // namespace fenestra

@@ -92,7 +92,7 @@ Grid makeGrid(const Stack& stack) {
           Affine(lpsToRas * steps, lpsToRas * getPosition(stack.slices.front()))};
 }
 
-using SliceVoxels = std::shared_ptr<const std::vector<double>>;
+using SliceVoxels = std::shared_ptr<const RescaledVoxels>;
 
 /// Rescaled voxels of the slices. The last two are kept, since slices of a volume may need both.
 class SliceReader {
@@ -105,7 +105,7 @@ public:
         return voxels;
     const auto& [path, header] = m_slices[i];
     m_kept[1] = std::move(m_kept[0]);
-    m_kept[0] = {i, std::make_shared<const std::vector<double>>(
+    m_kept[0] = {i, std::make_shared<const RescaledVoxels>(
                         rescaleVoxels(header, m_files.readVoxels(path, header)))};
     return m_kept[0].second;
   }
@@ -117,27 +117,34 @@ private:
 };
 
 /// Interpolated voxels; integers between integers.
-std::vector<double> blend(const std::vector<double>& lower, const std::vector<double>& upper,
-                          double fraction) {
-  const auto isIntegral = [](const std::vector<double>& voxels) {
+RescaledVoxels blend(const RescaledVoxels& lower, const RescaledVoxels& upper, double fraction) {
+  const auto isIntegral = [](const auto& voxels) {
     return computeStats(std::span(voxels)).isIntegral;
   };
-  const bool rounds = isIntegral(lower) && isIntegral(upper);
-  std::vector<double> voxels(lower.size());
-  std::ranges::transform(lower, upper, voxels.begin(), [=](double a, double b) {
-    const double value = a + fraction * (b - a);
-    return rounds ? std::round(value) : value;
-  });
-  return voxels;
+  const bool rounds = std::visit(isIntegral, lower) && std::visit(isIntegral, upper);
+  return std::visit(
+      [=](const auto& low, const auto& high) {
+        std::vector<double> voxels(low.size());
+        std::ranges::transform(low, high, voxels.begin(), [=](double a, double b) {
+          const double value = a + fraction * (b - a);
+          return rounds ? std::round(value) : value;
+        });
+        return voxels;
+      },
+      lower, upper);
 }
 
 VoxelStore readAll(const Stack& stack) {
   const DicomHeader& first = stack.header();
   VoxelStore all(std::size_t{first.rows} * first.columns * stack.spacing.slices.size());
   SliceReader reader(stack.slices);
-  const auto append = [&](const std::vector<double>& voxels) {
-    const std::span block(voxels);
-    all.append(block, computeStats(block));
+  const auto append = [&](const RescaledVoxels& rescaled) {
+    std::visit(
+        [&](const auto& voxels) {
+          const std::span block(voxels);
+          all.append(block, computeStats(block));
+        },
+        rescaled);
   };
   for (const SliceBlend& slice : stack.spacing.slices) {
     const SliceVoxels lower = reader.read(slice.lower);
