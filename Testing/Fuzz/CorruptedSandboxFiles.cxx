@@ -1,9 +1,11 @@
-// Reads corrupted DICOM and transform files in the sandbox. Each must be read, or fail with an
-// input Error of one line that names the file. usage: CorruptedSandboxFiles COUNT [SEED]
+// Reads corrupted DICOM files, images and segmentations, and transform files in the sandbox. Each
+// must be read, or fail with an input Error of one line that names the file. usage:
+// CorruptedSandboxFiles COUNT [SEED]
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
 #include "files/medical/DicomSeries.h"
+#include "files/segments/DicomSegments.h"
 #include "files/slicer/TransformFile.h"
 #include "io/Sandbox.h"
 
@@ -91,20 +93,22 @@ void classify(Counts& counts, const Path& path, const Read& read) {
 
 int runAll(int total, Random random) {
   const TemporaryFolder folder;
-  const std::vector<Seed> slices = loadSeeds(FENESTRA_SANDBOX_FILES "/Dicom"),
-                          transforms = loadSeeds(FENESTRA_SANDBOX_FILES "/Transform");
+  struct Kind {
+    std::vector<Seed> seeds;
+    void (*read)(const Path& path);
+  };
+  const Kind kinds[] = {{loadSeeds(FENESTRA_SANDBOX_FILES "/Dicom"),
+                         [](const Path& path) { readDicomVolume({path}, path.string()); }},
+                        {loadSeeds(FENESTRA_SANDBOX_FILES "/Segments"),
+                         [](const Path& path) { readDicomSegments(path, nullptr); }},
+                        {loadSeeds(FENESTRA_SANDBOX_FILES "/Transform"),
+                         [](const Path& path) { readLinearTransform(path).inverse(); }}};
   Counts counts;
   for (int i = 0; i < total; ++i) {
-    const bool isSlice = i % 2 == 0;
-    const std::vector<Seed>& seeds = isSlice ? slices : transforms;
-    const Seed& seed = seeds[static_cast<std::size_t>(i / 2) % seeds.size()];
+    const auto& [seeds, read] = kinds[static_cast<std::size_t>(i) % std::size(kinds)];
+    const Seed& seed = seeds[static_cast<std::size_t>(i) / std::size(kinds) % seeds.size()];
     const Path path = folder.write("damaged" + seed.extension, corrupt(seed.bytes, random));
-    classify(counts, path, [&] {
-      if (isSlice)
-        readDicomVolume({path}, path.string());
-      else
-        readLinearTransform(path).inverse();
-    });
+    classify(counts, path, [&path, use = read] { use(path); });
   }
   std::printf("%d files: %d read, %d rejected, %d errors\n", total, counts.read, counts.refused,
               counts.wrong);

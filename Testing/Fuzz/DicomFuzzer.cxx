@@ -1,8 +1,33 @@
-// DICOM: the input is the reply of the sandboxed child, which can be any bytes if a malicious file
-// has taken over the child. CorruptedSandboxFiles tests the files themselves.
+// DICOM images: the input is the reply of the sandboxed child, which can be any bytes if a
+// malicious file has taken over the child. CorruptedSandboxFiles tests the files themselves.
 #include "Harness.h"
 
-#include "files/medical/DicomReader.h"
+#include "files/medical/DicomSeries.h"
+#include "files/medical/DicomSpacing.h"
+#include "files/medical/StandardUptake.h"
+
+namespace {
+
+/// Evens the spacing of slices and converts PET, as readDicomVolume does before it reads voxels.
+void place(fenestra::DicomSlices& slices) {
+  using namespace fenestra;
+  std::vector<Message> warnings;
+  convertToSuv(slices, "series", warnings);
+  std::vector<PlacedSlice> placed;
+  for (const DicomSlice& slice : slices)
+    if (slice.header.position.size() == 3 && slice.header.pixelSpacing.size() == 2)
+      placed.push_back({"slice", getPosition(slice)});
+  const auto axes = findAxes(slices.front().header.orientation);
+  if (!axes || placed.empty() || placed.size() != slices.size())
+    return;
+  const std::vector<double>& pixel = slices.front().header.pixelSpacing;
+  std::ranges::stable_sort(
+      placed, {}, [&](const PlacedSlice& one) { return one.position.dot(axes->normal()); });
+  computeSpacing(placed, axes->normal(), {axes->row, axes->column}, {pixel[1], pixel[0]}, "series",
+                 warnings);
+}
+
+} // namespace
 
 FENESTRA_FUZZ(Dicom, input) {
   using namespace fenestra;
@@ -13,8 +38,16 @@ FENESTRA_FUZZ(Dicom, input) {
       throw inputError("slice.dcm", "is not a valid reply");
     }
   }();
-  for (const DicomHeader& header : headers) {
-    checkDicomPixels(fuzzing::writeInput(input, "slice.dcm"), header);
-    rescaleVoxels(header, std::string(imageBytes(header), '\x5a'));
+  const auto path = fuzzing::writeInput(input, "slice.dcm");
+  const auto empty = fuzzing::writeInput("", "empty.dcm"); // has no voxels to compare in a child
+  DicomSlices slices;
+  for (DicomHeader header : headers) {
+    header.isCompressed = false;
+    slices.push_back({empty, header});
   }
+  for (DicomSeries& series : splitSeries(std::move(slices), "series"))
+    for (DicomSlices& frame : series.frames)
+      place(frame);
+  checkDicomPixels(path, headers.front());
+  rescaleVoxels(headers.front(), std::string(imageBytes(headers.front()), '\x5a'));
 }

@@ -5,8 +5,8 @@
 
 FENESTRA_FUZZ(Labels, input) {
   using namespace fenestra;
-  const std::string name =
-      fuzzing::chooseName(input, std::array{"a.ctbl", "a.label", "a.json", "a.csv", "xml"});
+  const std::string name = fuzzing::chooseName(
+      input, std::array{"a.ctbl", "a.label", "a.json", "a.csv", "xml", "a.tsv", "a.txt"});
   const auto names = name == "xml"
                          ? parseLabelNamesXml(input, name)
                          : std::optional(readLabelNames(fuzzing::writeInput(input, name)));
