@@ -22,10 +22,13 @@ protected:
     writeSeg(folder / "b", "Liver mass", frame);
   }
 
-  void writeSeg(const Path& path, const std::string& segment, const std::string& uid) const {
+  void writeSeg(const std::filesystem::path& path, const std::string& segment,
+                const std::string& uid) const {
     const TemporaryFolder elsewhere;
-    const Path file = elsewhere.write(
-        "s", makeSegFile({.frameOfReference = uid, .segments = {{1, segment}}, .frames = {{}}}));
+    const std::filesystem::path file =
+        elsewhere.write("s", makeSegFile({.frameOfReference = uid,
+                                          .segments = {{1, segment}},
+                                          .frames = {{1, 0.0}, {1, 1.0}}}));
     std::filesystem::copy_file(file, path);
   }
 
@@ -47,7 +50,7 @@ TEST_F(DicomInput, SegmentationOfAnotherFrameOfReferenceWarns) {
   const TemporaryFolder other;
   writeSeg(other / "s", "Liver", "1.6");
   const Input input(folder.path());
-  const auto read = [&](const Path& path) {
+  const auto read = [&](const std::filesystem::path& path) {
     return input.segments({.segmentation = path.string()}).segmentation.warnings();
   };
   EXPECT_EQ(read(folder / "a"), std::vector<Message>());
