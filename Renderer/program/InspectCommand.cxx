@@ -1,7 +1,6 @@
 #include "program/Commands.h"
 
 #include "base/Error.h"
-#include "files/medical/DicomReader.h"
 #include "io/InputRegistry.h"
 #include "io/JsonNode.h"
 #include "program/CommandLine.h"
@@ -23,6 +22,7 @@ const Option inspectTable[] = {
      "As for render: volume of a scene, or series of a DICOM folder"},
     {"frame", "N", inspectGroup, "As for render: time of a series or 4D file"},
     {"nifti-form", "auto|qform|sform", inspectGroup, "As for render: which places a NIfTI volume"},
+    {"spacing", "X,Y,Z", inspectGroup, "As for render: of a stack of images, mm"},
     {{"segmentation", 's'},
      "FILE|NAME",
      inspectGroup,
@@ -52,9 +52,10 @@ const CommandSyntax& inspectSyntax() {
   static const CommandSyntax syntax = {
       "inspect",
       "Lists what an input contains, what a render would use, and what it would ignore and why.",
-      {{"INPUT", "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .hdr .mgz .mha "
-                 ".mhd), label map, "
-                 "segmentation (.seg.nrrd), folder of masks or DICOM folder"}},
+      {{"INPUT",
+        "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .hdr .mgz .mha "
+        ".mhd .tif), label map, segmentation (.seg.nrrd), or folder of masks, DICOM files, "
+        "or TIFF or PNG slices"}},
       inspectTable,
       {},
       "List what an input contains and what a render would use",
@@ -70,7 +71,8 @@ int inspectCommand(int argc, char** argv, int first) {
   configureMachine(*values);
   const Input input(*values->text("INPUT"));
   OptionValues given(renderSyntax.options);
-  for (const char* name : {"INPUT", "volume", "frame", "nifti-form", "segmentation", "labels"})
+  for (const char* name :
+       {"INPUT", "volume", "frame", "nifti-form", "spacing", "segmentation", "labels"})
     if (const auto value = values->text(name))
       given.add(name, *value);
   const SceneOptions stored = mergeSceneOptions(given, input);
@@ -80,8 +82,7 @@ int inspectCommand(int argc, char** argv, int first) {
   request.volume = readVolumeChoice(merged);
   request.segmentation = merged.text("segmentation");
   request.labels = merged.text("labels");
-  if (request.volume.name && !input.document() && !isFolder(input.path()) &&
-      !isDicomFile(input.path()))
+  if (request.volume.name && !input.document() && !isDicomInput(input.path()))
     throw usageError("--volume: only for a scene or DICOM folder with several volumes; omit it");
   Inspection inspection = inspectInput(request, input);
   if (Inspection& use = inspection["render"]; !use.is_null())

@@ -166,6 +166,7 @@ std::string describe(const Json& part) {
       {"linear", "linear", true},
       {"{files}"},
       {"{size} voxels of {spacing} mm"},
+      {"{size} voxels without a spacing", "spacing", nullptr},
       {"{voxelType} from {range}, center {center}"},
       {"one of {frames} frames"},
       {"transformed by {transforms}"},

@@ -313,6 +313,10 @@ struct RenderOptionTable {
        ValueSpec::choice(
            scene.volume.niftiForm,
            {{"auto", std::nullopt}, {"qform", NiftiForm::qform}, {"sform", NiftiForm::sform}})},
+      {"spacing", "X,Y,Z", outputGroup,
+       "Spacing of the voxels in mm, or one number for all axes: required for a folder of image "
+       "slices and a TIFF stack; also for a NRRD or MetaImage that states none [1 there]",
+       ValueSpec::text().bind(scene.volume.spacing, readSpacing)},
       {"strict", "", outputGroup,
        "Refuses an input of which positions, units, frames or slices would be assumed, "
        "interpolated or left out",
@@ -375,8 +379,8 @@ const CommandSyntax renderSyntax = {
     "segments "
     "of --focus. The word \"render\" is optional. Ctrl-C writes the image of the samples so far.",
     {{"INPUT",
-      "Volume (.nrrd .nhdr .nii .nii.gz .hdr .mgz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
-      ".mrb)"}},
+      "Volume (.nrrd .nhdr .nii .nii.gz .hdr .mgz .mha .mhd .tif), folder of DICOM files or of "
+      "TIFF or PNG slices, or Slicer scene (.mrml .mrb)"}},
     defaultTable.rows,
     {},
     "Render an image of a volume (the default command)",
@@ -395,7 +399,7 @@ RenderOptions readOptions(const OptionValues& values) {
 
 VolumeChoice readVolumeChoice(const OptionValues& values) {
   OptionValues chosen(renderSyntax.options);
-  for (const char* name : {"volume", "frame", "nifti-form"})
+  for (const char* name : {"volume", "frame", "nifti-form", "spacing"})
     if (const auto value = values.text(name))
       chosen.add(name, *value);
   return readOptions(chosen).scene.volume;

@@ -104,6 +104,15 @@ void readAnnotations(const OptionValues& values, const std::string& name,
   }
 }
 
+void readSpacing(const OptionValues& values, const std::string& name,
+                 std::optional<Vec3>& spacing) {
+  const std::string text = *values.text(name);
+  const bool isCubic = text.find(',') == std::string::npos;
+  spacing = isCubic ? Vec3::Constant(values.numbers(name, 1)[0]) : values.triple(name);
+  if (spacing->minCoeff() < 1e-9 || spacing->maxCoeff() > 1e9)
+    throw usageError("--", name, ": must be from 1e-9 to 1e9 mm, got '", toOneLine(text), "'");
+}
+
 void readSize(const OptionValues& values, const std::string& name, RenderRequest& scene) {
   constexpr int largest = 16384;
   const std::string text = *values.text(name);

@@ -20,6 +20,7 @@ void readEnvironment(const OptionValues& values, const std::string& name, Render
 void readBackground(const OptionValues& values, const std::string& name,
                     std::optional<Background>& background);
 void readAnnotations(const OptionValues& values, const std::string& name, Annotations& annotations);
+void readSpacing(const OptionValues& values, const std::string& name, std::optional<Vec3>& spacing);
 void readSize(const OptionValues& values, const std::string& name, RenderRequest& scene);
 void readShard(const OptionValues& values, const std::string& name, RenderOptions& options);
 void readTexts(const OptionValues& values, const std::string& name,

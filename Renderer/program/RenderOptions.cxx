@@ -4,10 +4,10 @@
 #include "program/RenderOptions.h"
 #include "base/Error.h"
 #include "files/images/ImageFormat.h"
-#include "files/medical/DicomReader.h"
 #include "files/slicer/SceneFiles.h"
 #include "program/Quality.h"
 #include "program/UsageError.h"
+#include "scene/Input.h"
 #include "scene/NamedPresets.h"
 
 #include <algorithm>
@@ -20,8 +20,7 @@ bool hasMaterials(const RenderRequest& scene) {
 }
 
 void checkInput(const OptionValues& values, const RenderRequest& scene) {
-  const bool isScene = isSceneFile(scene.input),
-             isDicom = isFolder(scene.input) || isDicomFile(scene.input),
+  const bool isScene = isSceneFile(scene.input), isDicom = !isScene && isDicomInput(scene.input),
              usesLabels = !scene.focus.empty() || hasMaterials(scene);
   if (scene.volume.name && !isScene && !isDicom)
     throw usageError("--volume: only for a scene or DICOM folder with several volumes; omit it");
@@ -108,7 +107,7 @@ std::filesystem::path makeDefaultOutput(const std::filesystem::path& input) {
     path = std::filesystem::canonical(path, failed);
   std::string name = path.filename().string();
   for (const char* ending : {".gz", ".nii", ".hdr", ".img", ".mgz", ".mgh", ".nrrd", ".nhdr",
-                             ".mha", ".mhd", ".mrml", ".mrb"})
+                             ".mha", ".mhd", ".tif", ".tiff", ".mrml", ".mrb"})
     if (name.ends_with(ending))
       name.erase(name.size() - std::string_view(ending).size());
   if (name.empty())

@@ -23,6 +23,7 @@ std::string formatExample(const nlohmann::ordered_json& example) {
       command += concat(option, quoteForShell(get(member)));
   };
   add(" --volume ", "choice");
+  add(" --spacing ", "spacing");
   add(" --segmentation ", "segmentation");
   if (!example.at("focus").is_null())
     command += " --focus " + quoteForShell(replaceAll(get("focus"), ",", "\\,"));

@@ -3,6 +3,7 @@
 #include "base/Error.h"
 #include "files/medical/DicomReader.h"
 #include "files/medical/DicomSeries.h"
+#include "files/medical/ImageStack.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/medical/NiftiForms.h"
 #include "files/medical/VolumeReader.h"
@@ -21,9 +22,11 @@ ScenePlan makePlan(const MrmlScene& scene, const InputChoice& choice, bool needs
   return planRender(scene.document, {choice.volume, choice.segmentation, needsSegmentation});
 }
 
-/// True for a folder, and for a DICOM file under any name but that of another volume format.
-bool isDicomInput(const std::filesystem::path& path) {
-  return isFolder(path) || (isDicomFile(path) && !findMedicalFormat(path));
+InputFiles toInputFiles(const std::vector<std::filesystem::path>& paths) {
+  InputFiles files;
+  std::ranges::transform(paths, std::back_inserter(files),
+                         [](const auto& path) { return path.string(); });
+  return files;
 }
 
 std::optional<SegmentNames> readSegmentNames(const InputChoice& choice) {
@@ -59,12 +62,7 @@ std::vector<Message> checkFrameOfReference(const std::string& file, const DicomS
 }
 
 InputFiles listSegmentationFiles(const std::filesystem::path& path) {
-  InputFiles files;
-  if (!isFolder(path))
-    return {path.string()};
-  for (const auto& file : listMaskFiles(path))
-    files.push_back(file.string());
-  return files;
+  return isFolder(path) ? toInputFiles(listMaskFiles(path)) : InputFiles{path.string()};
 }
 
 /// A segmentation with the files from which it was read.
@@ -117,6 +115,10 @@ Segmentation readNodes(MrmlScene& scene, const std::vector<const MrmlNode*>& nod
 }
 
 } // namespace
+
+bool isDicomInput(const std::filesystem::path& path) {
+  return isFolder(path) ? !isImageStack(path) : isDicomFile(path) && !findMedicalFormat(path);
+}
 
 struct Input::SharedState {
   /// Returns work(scene) under a lock. The first call opens the scene.
@@ -222,10 +224,11 @@ Input::findUnusedSegmentations(const std::optional<std::string>& volume) const {
 VolumeInput Input::volume(const VolumeChoice& choice) const {
   if (const DicomFolder* const folder = dicom()) {
     const DicomSeries series = chooseSeries(folder->series, choice.name, path().string());
-    VolumeInput input{readDicomVolume(series, choice)};
-    for (const auto& file : series.files())
-      input.files.push_back(file.string());
-    return input;
+    return {readDicomVolume(series, choice), toInputFiles(series.files())};
+  }
+  if (!m_state->isScene && isImageStack(path())) {
+    const ImageStack stack = openImageStack(path());
+    return {readImageStack(stack, choice), toInputFiles(stack.files())};
   }
   if (!m_state->isScene)
     return {readVolume(path(), choice), {path().string()}};

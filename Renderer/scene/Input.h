@@ -1,5 +1,6 @@
 #pragma once
-// Input of a request: a volume file, a DICOM folder, or a Slicer scene with its settings.
+// Input of a request: a volume file, a DICOM folder, a stack of images, or a Slicer scene with its
+// settings.
 
 #include "base/Error.h"
 #include "files/segments/SegmentationReader.h"
@@ -21,6 +22,10 @@ namespace fenestra {
 class MrmlDocument;
 struct DicomFolder;
 struct MrmlScene;
+
+/// True for a folder that is no stack of images, and for a DICOM file under any name but that of
+/// another volume format.
+bool isDicomInput(const std::filesystem::path& path);
 
 /// Paths of the files that were read, as the user named them.
 using InputFiles = std::vector<std::string>;

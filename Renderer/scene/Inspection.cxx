@@ -2,6 +2,7 @@
 
 #include "base/Color.h"
 #include "files/medical/DicomSeries.h"
+#include "files/medical/ImageStack.h"
 #include "files/segments/MaskFolder.h"
 #include "io/InputRegistry.h"
 #include "scene/DefaultTransfer.h"
@@ -127,6 +128,12 @@ std::string findVolumeBeside(const std::filesystem::path& segmentation) {
                            : std::filesystem::path("VOLUME");
 }
 
+/// True if a render fails only because the input and the request state no spacing.
+bool needsSpacing(const Json& report) {
+  const Json& refused = report["refused"];
+  return !refused.is_null() && refused["code"] == ErrorCode::spacingRequired;
+}
+
 /// Adds renders without a segmentation: of the volume, or if none is chosen, of each series.
 void addVolumeExamples(const RenderRequest& request, const DicomFolder* dicom, Json& report) {
   constexpr std::size_t mostListed = 8;
@@ -136,7 +143,7 @@ void addVolumeExamples(const RenderRequest& request, const DicomFolder* dicom, J
                                   {"segmentation", nullptr},
                                   {"focus", nullptr}});
   };
-  if (report["refused"].is_null()) {
+  if (report["refused"].is_null() || needsSpacing(report)) {
     add(nullIfEmpty(request.volume.name.value_or("")));
   } else if (dicom && !request.volume.name) {
     for (const DicomSeries& series : dicom->series) {
@@ -193,6 +200,25 @@ void addSegmentationsOf(const DicomFolder& dicom, const RenderRequest& request, 
   }
 }
 
+/// NODE of a stack of images that cannot be rendered without a spacing.
+Json stackJson(const ImageStack& stack) {
+  Json json = nodeJson("", stack.path.string());
+  for (const auto& file : stack.files())
+    json["files"].push_back({{"name", file.filename().string()}, {"there", true}});
+  json["size"] = stack.size();
+  json["spacing"] = nullptr;
+  return json;
+}
+
+/// Adds the spacing to the examples: that of the request, or if it is needed, a placeholder.
+void addSpacing(const RenderRequest& request, Json& report) {
+  const auto& spacing = request.volume.spacing;
+  for (Json& example : report["examples"])
+    example["spacing"] = spacing                ? Json(joinNumbers(*spacing, ",", 9))
+                         : needsSpacing(report) ? Json("X,Y,Z")
+                                                : Json(nullptr);
+}
+
 Json inspectFiles(const RenderRequest& request, const Input& input) {
   if (isFolder(request.input))
     if (auto masks = inspectMaskFolder(request, input))
@@ -206,9 +232,15 @@ Json inspectFiles(const RenderRequest& request, const Input& input) {
   if (dicom)
     report["series"] = seriesJson(*dicom);
   const FileVolume volume = inspectVolume(request, input, report);
+  const bool isStack = !dicom && isImageStack(request.input);
+  if (isStack && !volume.grid && !needsSpacing(report))
+    throw *volume.failure;
+  if (isStack && !volume.grid)
+    report["volumes"].push_back(stackJson(openImageStack(request.input)));
   Json& segmentations = report["segmentations"];
   const Grid* grid = volume.grid ? &*volume.grid : nullptr;
-  if (!dicom && (!grid || volume.isLikelyLabelMap || hasSegmentationName(request.input))) {
+  if (!dicom && !isStack &&
+      (!grid || volume.isLikelyLabelMap || hasSegmentationName(request.input))) {
     segmentations.push_back(
         inspectSegmentationFile(request.input, grid, request.labels, report["warnings"]));
     if (!grid && !segmentations.back()["problem"].is_null())
@@ -380,7 +412,10 @@ void addExample(const std::string& volume, const Json& choice, const Json& segme
 }
 
 Inspection inspectInput(const RenderRequest& request, const Input& input) {
-  return input.document() ? inspectScene(request, input) : inspectFiles(request, input);
+  Inspection report =
+      input.document() ? inspectScene(request, input) : inspectFiles(request, input);
+  addSpacing(request, report);
+  return report;
 }
 
 } // namespace fenestra

@@ -28,7 +28,7 @@ namespace fenestra {
 ///     others {tag: count}
 ///     materials [name, kind, color (like a segment's material)]: the library
 ///     examples [volume, choice (of a series or node, or null), segmentation (file or node, or
-///       null), focus (segment, or null)]: renders
+///       null), focus (segment, or null), spacing ("X,Y,Z" in mm, or null)]: renders
 ///     render: null if the choice of nodes is ambiguous, else what a render uses, with null for
 ///       unreadable parts: volume {id, name, size, spacing, center, voxelType, range, frames,
 ///       transforms [id, innermost first]}, look {source ("volumeProperty" | "volumeDisplay" |

@@ -93,7 +93,8 @@ TEST_F(InspectCommand, ExampleForAFolderOfMasksRuns) {
   EXPECT_EQ(report["examples"][0], (Json{{"volume", "volume.nrrd"},
                                          {"choice", nullptr},
                                          {"segmentation", "two masks"},
-                                         {"focus", "left lung"}}));
+                                         {"focus", "left lung"},
+                                         {"spacing", nullptr}}));
   EXPECT_NE(run({"inspect", "two masks"}, folder.path())
                 .out.find("fenestra volume.nrrd --segmentation 'two masks' --focus 'left lung' "
                           "--output image.png\n"),

@@ -38,6 +38,8 @@ fenestra scan.nrrd --transfer ct-an|ct-anatomy
 fenestra --preset brain-t|brain-tumor
 fenestra --lights ci|cinema
 fenestra --layers den|denoised
+fenestra --spac|--spacing
+fenestra inspect --spac|--spacing
 fenestra --clip-softness au|auto
 fenestra --transfer loo|look.json
 fenestra --segmentation lab|labels.nrrd

@@ -1,4 +1,4 @@
-// Geometry of NIfTI files: qform, sform, both, and files written by other programs.
+// Geometry of NIfTI files: qform, sform, both, and files written by other programs; scaling.
 
 #include "NiftiFile.h"
 #include "Refusals.h"
@@ -165,6 +165,34 @@ TEST(NiftiHeader, OffsetInsideHeaderIsIgnored) {
     std::memcpy(&bytes[108], &offset, sizeof offset);
     EXPECT_EQ(readVolume(folder.write("v.nii", bytes)).grid.size, Size3(3, 4, 2)) << offset;
   }
+}
+
+TEST(NiftiHeader, NonFiniteTransformsAreRefused) {
+  const TemporaryFolder folder;
+  NiftiFile file;
+  file.qformCode = file.sformCode = 1;
+  const std::string good = file.bytes();
+  for (const std::size_t at : {80u, 256u, 268u, 280u, 324u}) // pixdim, qform, sform
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(),
+                            -std::numeric_limits<float>::infinity(), 1e38f}) {
+      std::string bytes = good;
+      std::memcpy(&bytes[at], &bad, sizeof bad);
+      const auto path = folder.write("bad.nii", bytes);
+      expectRefused(path, "invalid-field: qform, sform or pixdim", [&] { readVolume(path); });
+    }
+}
+
+TEST(NiftiHeader, IntensityScalingIsApplied) {
+  const TemporaryFolder folder;
+  NiftiFile file;
+  file.sformCode = 1;
+  std::iota(file.samples.begin(), file.samples.end(), std::int16_t(0));
+  std::string bytes = file.bytes();
+  const std::array<float, 2> scaling = {2.0f, -1000.0f}; // slope, intercept
+  std::memcpy(&bytes[112], scaling.data(), sizeof scaling);
+  const Volume volume = readVolume(folder.write("scaled.nii", bytes));
+  EXPECT_EQ(volume.minimum, -1000.0);
+  EXPECT_EQ(std::get<LargeArray<std::int16_t>>(volume.voxels)[23], -954);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
-// Choice among frames and NIfTI forms.
+// Choice among frames and NIfTI forms; spacing of files that state none.
 
+#include "Approx.h"
 #include "NiftiFile.h"
 #include "Refusals.h"
 
@@ -112,6 +113,47 @@ TEST(VolumeChoice, MissingFormIsRefused) {
   const auto path = folder.write("v.nii", file.bytes());
   expectRefused(path, "unknown-form | qform",
                 [&] { readVolume(path, {.niftiForm = NiftiForm::qform}); });
+}
+
+/// `space`: further fields of a NRRD, one per line.
+std::string makeNrrd(const std::string& space) {
+  return "NRRD0004\ntype: uint8\nencoding: raw\ndimension: 3\nsizes: 3 4 2\n" + space + "\n" +
+         std::string(24, 'x');
+}
+
+std::string makeMeta(const std::string& spacing) {
+  return "ObjectType = Image\nNDims = 3\nDimSize = 3 4 2\n" + spacing +
+         "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n" + std::string(24, 'x');
+}
+
+TEST(VolumeChoice, SpacingReplacesTheAssumedOne) {
+  const TemporaryFolder folder;
+  const Vec3 spacing(0.5, 2.0, 3.0);
+  const auto nrrd = folder.write("v.nrrd", makeNrrd("")),
+             meta = folder.write("v.mha", makeMeta(""));
+  for (const auto& [path, others] : {std::pair(nrrd, 1U), {meta, 0U}}) { // no space: axes assumed
+    ASSERT_EQ(readVolume(path).warnings.size(), 1U) << path;
+    EXPECT_NE(readVolume(path).warnings[0].detail.find("1 mm"), std::string::npos);
+    const Volume volume = readVolume(path, {.spacing = spacing});
+    EXPECT_TRUE(isApprox(volume.grid.indexToWorld * Vec3(2, 3, 1), Vec3(-1, -6, 3), 1e-12));
+    ASSERT_EQ(volume.warnings.size(), others);
+    for (const Message& warning : volume.warnings)
+      EXPECT_EQ(warning.detail.find("1 mm"), std::string::npos);
+  }
+}
+
+TEST(VolumeChoice, SpacingOfAFileThatStatesOneIsRefused) {
+  const TemporaryFolder folder;
+  NiftiFile file;
+  file.sformCode = 1;
+  for (const auto& path :
+       {folder.write("s.nrrd", makeNrrd("spacings: 1 1 1\n")),
+        folder.write("d.nrrd", makeNrrd("space: left-posterior-superior\n"
+                                        "space directions: (1,0,0) (0,1,0) (0,0,1)\n")),
+        folder.write("v.mha", makeMeta("ElementSpacing = 1 1 1\n")),
+        folder.write("v.nii", file.bytes())})
+    expectRefused(path, "invalid-value",
+                  [&] { readVolume(path, {.spacing = Vec3(1.0, 1.0, 1.0)}); });
 }
 
 } // namespace

@@ -408,32 +408,6 @@ TEST(VolumeReader, RefusesInvalidDataFiles) {
         "");
 }
 
-TEST(VolumeReader, RefusesNonFiniteNiftiTransforms) {
-  const TemporaryFolder folder;
-  writeFile(folder / "v.nii", makeRamp<std::uint8_t>(0, 1));
-  const std::string good = readBytes(folder / "v.nii");
-  for (const std::size_t at : {80u, 256u, 268u, 280u, 324u}) // pixdim, qform, sform
-    for (const float bad : {std::numeric_limits<float>::quiet_NaN(),
-                            -std::numeric_limits<float>::infinity(), 1e38f}) {
-      std::string bytes = good;
-      bytes.replace(252, 4, std::string("\1\0\1\0", 4)); // qform and sform are both set
-      bytes.replace(at, 4, rawBytes(std::vector<float>{bad}));
-      expectRefusal(folder.write("bad.nii", bytes), "invalid-field: qform, sform or pixdim");
-    }
-}
-
-TEST(VolumeReader, AppliesTheIntensityScalingOfNifti) {
-  const TemporaryFolder folder;
-  writeFile(folder / "v.nii", makeRamp<std::uint8_t>(0, 1));
-  std::string bytes = readBytes(folder / "v.nii");
-  const float slope = 2.0f, intercept = -1000.0f;
-  bytes.replace(112, 4, rawBytes(std::vector<float>{slope}));
-  bytes.replace(116, 4, rawBytes(std::vector<float>{intercept}));
-  const Volume volume = readVolume(folder.write("scaled.nii", bytes));
-  EXPECT_EQ(volume.minimum, -1000.0);
-  EXPECT_EQ(getVoxels<std::int16_t>(volume)[23], -954);
-}
-
 // ---- real data
 
 std::filesystem::path findData(const std::string& name) {

@@ -194,6 +194,7 @@ Volume readFrame(const DicomSeries& series, const std::string& name, const Volum
 
 Volume readVolumeOf(const DicomSeries& series, const std::string& name,
                     const VolumeChoice& choice) {
+  refuseSpacing(name, choice);
   try {
     return readFrame(series, name, choice);
   } catch (const std::bad_alloc&) {

@@ -17,6 +17,7 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <optional>
 
 namespace fenestra {
 namespace {
@@ -83,14 +84,17 @@ void checkGeometry(const std::filesystem::path& path, const Mat3& directions, co
     throw fieldError(path, "directions", "the axes are linearly dependent; fix the header");
 }
 
-Grid readGrid(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
+/// `chosen`: spacing of a file that states none; empty: ITK's.
+Grid readGrid(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed,
+              const std::optional<Vec3>& chosen) {
   const Size3 size = readSize(path, io, allowed);
   Mat3 directions;
   Vec3 spacing, origin;
   for (unsigned axis = 0; axis < 3; ++axis) {
     const std::vector<double> direction = io.GetDirection(axis);
     directions.col(static_cast<int>(axis)) = {direction[0], direction[1], direction[2]};
-    spacing[static_cast<int>(axis)] = io.GetSpacing(axis);
+    spacing[static_cast<int>(axis)] =
+        chosen ? (*chosen)[static_cast<int>(axis)] : io.GetSpacing(axis);
     origin[static_cast<int>(axis)] = io.GetOrigin(axis);
   }
   checkGeometry(path, directions, spacing, origin);
@@ -185,6 +189,7 @@ std::size_t multiplySizes(const std::filesystem::path& path,
 void readNifti(const std::filesystem::path& path, const StoredSamples& stored,
                const NiftiHeader& header, Components allowed, const SampleConsumer& consume,
                const VolumeChoice& choice) {
+  refuseSpacing(path.string(), choice);
   const std::size_t axes = header.size.size();
   if (axes < 3)
     throw inputError(ErrorCode::unsupportedFile, path, "is an image of ", axes,
@@ -214,10 +219,11 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
   const StoredSamples stored = locateSamples(path, format); // rejects what would crash ITK
   if (format == MedicalFormat::nifti)
     return readNifti(path, stored, readNiftiHeader(path, choice), allowed, consume, choice);
-  if (choice.niftiForm)
-    throw inputError(ErrorCode::unknownForm, path, "is no NIfTI file, so it has no qform or sform");
+  refuseForm(path.string(), choice);
   if (format == MedicalFormat::mgh)
     return readNifti(path, stored, readMghHeader(path), allowed, consume, choice);
+  if (stored.hasSpacing)
+    refuseSpacing(path.string(), choice);
   const SuppressItkOutput suppress;
   const auto io = makeImageIo(format);
   io->SetFileName(path.string());
@@ -226,17 +232,17 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
   if (allowed == Components::any && format != MedicalFormat::nrrd)
     allowed = Components::one;
   checkPixels(path, *io, allowed, allowed == Components::oneFrame && stored.hasList);
-  MedicalImage image{.grid = readGrid(path, *io, allowed),
+  MedicalImage image{.grid = readGrid(path, *io, allowed, choice.spacing),
                      .components = io->GetNumberOfComponents(),
                      .hasFrames = countFrames(*io) > 1,
                      .fields = readTextFields(*io)};
   // The oldest segmentations of Slicer have another convention (SegmentationReader.cxx).
   const bool hasAxes = stored.hasAxes || image.fields.contains("Segmentation_Extent");
-  if (!stored.hasSpacing || !hasAxes)
+  const bool hasSpacing = stored.hasSpacing || choice.spacing;
+  if (!hasSpacing || !hasAxes)
     image.warnings.push_back(makeMessage(
-        ErrorCode::assumedGeometry, path,
-        stored.hasSpacing ? "" : "has no spacing: 1 mm is assumed",
-        stored.hasSpacing || hasAxes ? "" : "; ",
+        ErrorCode::assumedGeometry, path, hasSpacing ? "" : "has no spacing: 1 mm is assumed",
+        hasSpacing || hasAxes ? "" : "; ",
         hasAxes ? "" : "has no space: axes are assumed toward left, posterior and superior"));
   if (image.hasFrames)
     image.components = countFrames(*io);
@@ -282,7 +288,7 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
   if (!format)
     throw inputError(ErrorCode::unsupportedFile, path,
                      "has an unknown extension; give a .nrrd, .nhdr, .nii, .nii.gz, .hdr, .mgz, "
-                     ".mha or .mhd file");
+                     ".mha or .mhd file, or a folder of slices");
   rejectMisnamed(path);
   try {
     readChecked(path, *format, allowed, consume, choice);

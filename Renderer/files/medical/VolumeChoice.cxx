@@ -13,4 +13,16 @@ std::size_t chooseFrame(const std::string& subject, std::optional<std::size_t> f
   return frame.value_or(0);
 }
 
+void refuseForm(const std::string& subject, const VolumeChoice& choice) {
+  if (choice.niftiForm)
+    throw inputError(ErrorCode::unknownForm, subject,
+                     "is no NIfTI file, so it has no qform or sform");
+}
+
+void refuseSpacing(const std::string& subject, const VolumeChoice& choice) {
+  if (choice.spacing)
+    throw inputError(ErrorCode::invalidValue, subject,
+                     "states its own voxel spacing, so none may be given");
+}
+
 } // namespace fenestra

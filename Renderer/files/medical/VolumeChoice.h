@@ -2,6 +2,7 @@
 // Which volume to read, where an input holds several, or places one in two ways.
 
 #include "base/Error.h"
+#include "base/Vector.h"
 
 #include <cstddef>
 #include <optional>
@@ -18,6 +19,7 @@ struct VolumeChoice {
   std::optional<std::size_t> frame = {};   ///< time of a series or 4D file; empty: the first
   std::optional<NiftiForm> niftiForm = {}; ///< empty: by the rule of NiftiHeader.h
   std::string formReason = {}; ///< whose grid only that form agrees with; empty: the user's choice
+  std::optional<Vec3> spacing = {}; ///< mm along x, y, z; only for an input that states none
 
   bool operator==(const VolumeChoice&) const = default;
 };
@@ -26,5 +28,11 @@ struct VolumeChoice {
 /// Throws Error (input) if there is no such frame. `subject` is used in messages.
 std::size_t chooseFrame(const std::string& subject, std::optional<std::size_t> frame,
                         std::size_t count, std::vector<Message>& warnings);
+
+/// Throws Error (input) if the choice has a NIfTI form: the input has none.
+void refuseForm(const std::string& subject, const VolumeChoice& choice);
+
+/// Throws Error (input) if the choice has a spacing: the input states its own.
+void refuseSpacing(const std::string& subject, const VolumeChoice& choice);
 
 } // namespace fenestra
