@@ -54,7 +54,7 @@ const CommandSyntax& inspectSyntax() {
       "Lists what an input contains, what a render would use, and what it would ignore and why.",
       {{"INPUT",
         "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .hdr .mgz .mha "
-        ".mhd .tif), label map, segmentation (.seg.nrrd), or folder of masks, DICOM files, "
+        ".mhd .vti .tif), label map, segmentation (.seg.nrrd), or folder of masks, DICOM files, "
         "or TIFF or PNG slices"}},
       inspectTable,
       {},

@@ -378,9 +378,9 @@ const CommandSyntax renderSyntax = {
     "Renders a medical volume by Monte Carlo path tracing. A clipping surface uncovers the "
     "segments "
     "of --focus. The word \"render\" is optional. Ctrl-C writes the image of the samples so far.",
-    {{"INPUT",
-      "Volume (.nrrd .nhdr .nii .nii.gz .hdr .mgz .mha .mhd .tif), folder of DICOM files or of "
-      "TIFF or PNG slices, or Slicer scene (.mrml .mrb)"}},
+    {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .hdr .mgz .mha .mhd .vti .tif), folder of DICOM "
+               "files or of "
+               "TIFF or PNG slices, or Slicer scene (.mrml .mrb)"}},
     defaultTable.rows,
     {},
     "Render an image of a volume (the default command)",

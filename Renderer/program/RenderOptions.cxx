@@ -107,7 +107,7 @@ std::filesystem::path makeDefaultOutput(const std::filesystem::path& input) {
     path = std::filesystem::canonical(path, failed);
   std::string name = path.filename().string();
   for (const char* ending : {".gz", ".nii", ".hdr", ".img", ".mgz", ".mgh", ".nrrd", ".nhdr",
-                             ".mha", ".mhd", ".tif", ".tiff", ".mrml", ".mrb"})
+                             ".mha", ".mhd", ".vti", ".tif", ".tiff", ".mrml", ".mrb"})
     if (name.ends_with(ending))
       name.erase(name.size() - std::string_view(ending).size());
   if (name.empty())

@@ -243,6 +243,8 @@ std::optional<MedicalFormat> findMedicalFormat(const std::filesystem::path& path
     return MedicalFormat::mgh;
   if (name.ends_with(".mha") || name.ends_with(".mhd"))
     return MedicalFormat::metaImage;
+  if (name.ends_with(".vti"))
+    return MedicalFormat::vtk;
   return std::nullopt;
 }
 

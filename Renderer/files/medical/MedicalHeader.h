@@ -13,10 +13,10 @@
 
 namespace fenestra {
 
-enum class MedicalFormat { nrrd, nifti, mgh, metaImage };
+enum class MedicalFormat { nrrd, nifti, mgh, metaImage, vtk };
 
 /// Format by file extension, case-insensitive: .nrrd .nhdr; .nii .nii.gz, or .hdr and .img, perhaps
-/// with .gz (NIfTI or Analyze); .mgz .mgh .mgh.gz; .mha .mhd; nullopt: unknown.
+/// with .gz (NIfTI or Analyze); .mgz .mgh .mgh.gz; .mha .mhd; .vti; nullopt: unknown.
 std::optional<MedicalFormat> findMedicalFormat(const std::filesystem::path& path);
 
 /// Files of a NIfTI or Analyze image: twice the same, or .hdr and .img, whichever is named.
@@ -44,7 +44,7 @@ struct StoredSamples {
 };
 
 /// Throws Error (input) if the header does not match its format, names anything but plain files, or
-/// has values known to crash ITK's readers.
+/// has values known to crash ITK's readers. Not for VTK images (VtkImage.h).
 StoredSamples locateSamples(const std::filesystem::path& path, MedicalFormat format);
 
 /// Returns the size in bytes of `count` samples of `sampleBytes` each, plus `skipped` bytes before

@@ -6,6 +6,7 @@
 #include "files/medical/NiftiSamples.h"
 #include "files/medical/SampleStream.h"
 #include "files/medical/SuppressItkOutput.h"
+#include "files/medical/VtkImage.h"
 #include "io/InputRegistry.h"
 
 #include <itkMetaDataObject.h>
@@ -214,8 +215,29 @@ void readNifti(const std::filesystem::path& path, const StoredSamples& stored,
   consume(image, pickFrame(openNiftiSamples(path, stored, header, samples), frames));
 }
 
+/// Reads a VTK image. Like Slicer, takes its coordinates as LPS.
+void readVtk(const std::filesystem::path& path, const SampleConsumer& consume,
+             const VolumeChoice& choice) {
+  refuseForm(path.string(), choice);
+  const VtkImage read = openVtkImage(path, choice.spacing);
+  if (read.hasSpacing)
+    refuseSpacing(path.string(), choice);
+  const Mat3& directions = read.indexToWorld.linear();
+  const Vec3& origin = read.indexToWorld.translation();
+  checkGeometry(path, directions, directions.columnNorms(), origin);
+  MedicalImage image{.grid = {read.size, Affine(lpsToRas * directions, lpsToRas * origin)}};
+  image.warnings.push_back(makeMessage(
+      ErrorCode::assumedGeometry, path,
+      read.hasSpacing || choice.spacing ? "" : "has no spacing: 1 mm is assumed; ",
+      "states no anatomical axes: they are assumed toward left, posterior and superior"));
+  chooseFrame(path.string(), choice.frame, image.frameCount, image.warnings);
+  consume(image, read.samples);
+}
+
 void readChecked(const std::filesystem::path& path, MedicalFormat format, Components allowed,
                  const SampleConsumer& consume, const VolumeChoice& choice) {
+  if (format == MedicalFormat::vtk)
+    return readVtk(path, consume, choice);
   const StoredSamples stored = locateSamples(path, format); // rejects what would crash ITK
   if (format == MedicalFormat::nifti)
     return readNifti(path, stored, readNiftiHeader(path, choice), allowed, consume, choice);
@@ -288,7 +310,7 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
   if (!format)
     throw inputError(ErrorCode::unsupportedFile, path,
                      "has an unknown extension; give a .nrrd, .nhdr, .nii, .nii.gz, .hdr, .mgz, "
-                     ".mha or .mhd file, or a folder of slices");
+                     ".mha, .mhd or .vti file, or a folder of slices");
   rejectMisnamed(path);
   try {
     readChecked(path, *format, allowed, consume, choice);

@@ -1,12 +1,13 @@
 #include "files/segments/VtkSurface.h"
 
 #include "base/Error.h"
-#include "io/Base64.h"
+#include "files/formats/VtkArrays.h"
 #include "io/InputRegistry.h"
 
 #include <pugixml.hpp>
-#include <zlib.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstring>
 #include <string_view>
 
@@ -30,92 +31,25 @@ void charge(MemoryBudget& budget, std::uint64_t count, std::uint64_t size = 1) {
   budget.bytes -= count * size;
 }
 
-// ---- bytes
-
-std::string decodeBase64(std::string_view text) {
-  auto bytes = fromBase64(text);
-  if (!bytes)
-    throw damagedSurface;
-  return *std::move(bytes);
-}
-
-template <typename T>
-T readNumber(std::string_view bytes, std::uint64_t index) {
-  T value{};
-  if (bytes.size() / sizeof(T) <= index)
-    throw damagedSurface;
-  std::memcpy(&value, bytes.data() + index * sizeof(T), sizeof(T));
-  return value;
-}
-
 /// Encoding of the file's arrays, and the memory budget for decoding them.
 struct ArrayEncoding {
   MemoryBudget& budget;
-  bool has64BitHeaders = false; ///< header words have 64 bits, not 32
-  bool isDeflated = false;
-
-  std::uint64_t header(std::string_view bytes, std::uint64_t index) const {
-    return has64BitHeaders ? readNumber<std::uint64_t>(bytes, index)
-                           : readNumber<std::uint32_t>(bytes, index);
-  }
-  std::size_t headerSize() const { return has64BitHeaders ? 8 : 4; }
+  VtkEncoding stored;
 };
 
-std::string readPlainArray(std::string_view text, const ArrayEncoding& encoding) {
-  std::string bytes = decodeBase64(text);
-  const std::uint64_t length = encoding.header(bytes, 0);
-  bytes.erase(0, encoding.headerSize());
-  if (length > bytes.size())
-    throw damagedSurface;
-  bytes.resize(static_cast<std::size_t>(length));
-  return bytes;
-}
-
-/// Inflates an array. Its header has the number of blocks, the sizes of a block and of the last one
-/// (0: complete), and the deflated size of each block; the blocks follow.
-std::string inflateArray(std::string_view text, const ArrayEncoding& encoding) {
-  const auto computeBase64Size = [](std::uint64_t bytes) { return (bytes + 2) / 3 * 4; };
-  const std::size_t word = encoding.headerSize();
-  const std::string start = decodeBase64(text.substr(0, computeBase64Size(3 * word)));
-  const std::uint64_t blocks = encoding.header(start, 0);
-  if (blocks > text.size())
-    throw damagedSurface;
-  if (blocks == 0)
-    return {};
-  const std::uint64_t headerText = computeBase64Size((3 + blocks) * word);
-  if (headerText > text.size())
-    throw damagedSurface;
-  const std::string header = decodeBase64(text.substr(0, static_cast<std::size_t>(headerText)));
-  const std::string packed = decodeBase64(text.substr(static_cast<std::size_t>(headerText)));
-  const std::uint64_t blockSize = encoding.header(header, 1), lastSize = encoding.header(header, 2);
-  std::string bytes;
-  std::size_t at = 0;
-  if (std::max(blockSize, lastSize) > encoding.budget.bytes / blocks)
+std::string readBinary(const pugi::xml_node& array, const ArrayEncoding& encoding) {
+  constexpr std::size_t chunk = 1 << 20; // the declared size may be far too large
+  VtkArrayReader reader(openInlineBytes(array), encoding.stored);
+  if (reader.size() > encoding.budget.bytes)
     throw largeSurface;
-  for (std::uint64_t block = 0; block < blocks; ++block) {
-    const std::uint64_t length = encoding.header(header, 3 + block);
-    const bool partial = block + 1 == blocks && lastSize != 0;
-    const std::uint64_t size = partial ? lastSize : blockSize;
-    constexpr std::uint64_t ratio = 1032, slack = 64; // maximum of deflate
-    if (length > packed.size() - at || size > length * ratio + slack)
-      throw damagedSurface;
+  const auto size = static_cast<std::size_t>(reader.size());
+  std::string bytes;
+  while (bytes.size() < size) {
     const std::size_t before = bytes.size();
-    bytes.resize(before + static_cast<std::size_t>(size));
-    auto written = static_cast<uLongf>(size);
-    if (uncompress(reinterpret_cast<Bytef*>(bytes.data() + before), &written,
-                   reinterpret_cast<const Bytef*>(packed.data() + at),
-                   static_cast<uLong>(length)) != Z_OK ||
-        written != size)
-      throw damagedSurface;
-    at += static_cast<std::size_t>(length);
+    bytes.resize(std::min(size, before + chunk));
+    reader.read(&bytes[before], bytes.size() - before);
   }
   return bytes;
-}
-
-std::string readBinary(const pugi::xml_node& array, const ArrayEncoding& encoding) {
-  std::string text = array.text().get();
-  std::erase_if(text, [](unsigned char c) { return std::isspace(c); });
-  return encoding.isDeflated ? inflateArray(text, encoding) : readPlainArray(text, encoding);
 }
 
 // ---- arrays
@@ -124,8 +58,11 @@ template <typename T>
 std::vector<double> convertNumbers(const std::string& bytes, const ArrayEncoding& encoding) {
   charge(encoding.budget, bytes.size() / sizeof(T), sizeof(double));
   std::vector<double> numbers(bytes.size() / sizeof(T));
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    numbers[i] = static_cast<double>(readNumber<T>(bytes, i));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    T number{};
+    std::memcpy(&number, bytes.data() + i * sizeof(T), sizeof(T));
+    numbers[i] = static_cast<double>(number);
+  }
   return numbers;
 }
 
@@ -217,14 +154,11 @@ void addPiece(const pugi::xml_node& piece, const ArrayEncoding& encoding, VtkSur
 VtkSurface readSurface(const pugi::xml_document& document, const std::set<std::string>& fieldData,
                        MemoryBudget& budget) {
   const pugi::xml_node file = document.child("VTKFile");
-  const std::string_view compressor = file.attribute("compressor").value();
-  if (std::string_view(file.attribute("type").value()) != "PolyData" ||
-      std::string_view(file.attribute("byte_order").value()) != "LittleEndian" ||
-      (!compressor.empty() && compressor != "vtkZLibDataCompressor"))
+  const auto stored = findVtkEncoding(file);
+  if (std::string_view(file.attribute("type").value()) != "PolyData" || !stored ||
+      stored->order != std::endian::little)
     throw damagedSurface;
-  const ArrayEncoding encoding{budget,
-                               std::string_view(file.attribute("header_type").value()) == "UInt64",
-                               !compressor.empty()};
+  const ArrayEncoding encoding{budget, *stored};
   VtkSurface surface;
   const pugi::xml_node data = file.child("PolyData");
   for (const pugi::xml_node& array : data.child("FieldData").children()) {
@@ -251,7 +185,11 @@ VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std:
     charge(budget, std::filesystem::file_size(path));
     if (!document.load_file(path.c_str()))
       throw damagedSurface;
-    return readSurface(document, fieldData, budget);
+    try {
+      return readSurface(document, fieldData, budget);
+    } catch (const VtkArrayError&) {
+      throw damagedSurface;
+    }
   } catch (const SurfaceError& error) {
     throw inputError(error.code, path, error.reason,
                      "; export the segmentation in Slicer as a binary labelmap (.seg.nrrd)");
