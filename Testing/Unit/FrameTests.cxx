@@ -1,5 +1,6 @@
 // One frame of several: NIfTI, NRRD and MetaImage.
 
+#include "Approx.h"
 #include "MedicalFiles.h"
 #include "NiftiFile.h"
 
@@ -110,6 +111,107 @@ TEST(Frames, NrrdListHoldsFramesFirstOrLast) {
     expectEachFrame(folder.write(
         "last.nrrd", makeNrrd("3 4 2 5", "domain domain domain list", isCompressed, false)));
   }
+}
+
+/// NRRD of 2 x 1 x 3 mm; the first voxel is at (-1, -2, 3), RAS. `fields`: those of its space.
+std::string makeTimed(const std::string& fields, bool isInterleaved, bool isCompressed = false,
+                      const std::string& more = "type: short\nendian: little\n") {
+  const std::string samples = rawBytes(makeFrames(isInterleaved));
+  return "NRRD0005\ndimension: 4\n" + more + "encoding: " + (isCompressed ? "gzip" : "raw") + "\n" +
+         fields + "\n" + (isCompressed ? compress(samples) : samples);
+}
+
+struct TimedNrrd {
+  std::string space, directions, origin, kinds;
+  bool isFirst = false; ///< time is the first axis
+
+  std::string fields() const {
+    return "space" + space + "\nspace directions: " + directions + "\nspace origin: " + origin +
+           "\nsizes: " + (isFirst ? "5 3 4 2" : "3 4 2 5") + "\n" +
+           (kinds.empty() ? "" : "kinds: " + kinds + "\n");
+  }
+};
+
+TEST(Frames, NrrdWithATimeAxisInSpaceGivesFrames) {
+  const std::string lps = ": left-posterior-superior", three = "(2,0,0) (0,1,0) (0,0,3)",
+                    four = "(2,0,0,0) (0,1,0,0) (0,0,3,0)", time = "(0,0,0,1.5)";
+  const std::vector<TimedNrrd> files = {
+      {lps, three + " none", "(1,2,3)", "domain domain domain time"},
+      {lps, "none " + three, "(1,2,3)", "time domain domain domain", true},
+      {lps, three + " none", "(1,2,3)", "space space space none"},
+      {lps, three + " none", "(1,2,3)", "domain domain domain ???"},
+      {lps, three + " none", "(1,2,3)", ""},
+      {lps, "none " + three, "(1,2,3)", "", true},
+      {": LAS", "(2,0,0) (0,-1,0) (0,0,3) none", "(1,-2,3)", "domain domain domain time"},
+      {": right-anterior-superior", "none (-2,0,0) (0,-1,0) (0,0,3)", "(-1,-2,3)", "", true},
+      {lps + "-time", four + " " + time, "(1,2,3,0)", "domain domain domain time"},
+      {lps + "-time", time + " " + four, "(1,2,3,0)", "time domain domain domain", true},
+      {": LPST", four + " " + time, "(1,2,3,0)", ""},
+      {": RAST", "(-2,0,0,0) (0,-1,0,0) (0,0,3,0) " + time, "(-1,-2,3,0)", ""}};
+  const TemporaryFolder folder;
+  for (const TimedNrrd& file : files)
+    for (const bool isCompressed : {false, true}) {
+      const auto path =
+          folder.write("v.nrrd", makeTimed(file.fields(), file.isFirst, isCompressed));
+      expectEachFrame(path);
+      const Affine map = readVolume(path).grid.indexToWorld;
+      EXPECT_TRUE(isApprox(map * Vec3(0, 0, 0), Vec3(-1, -2, 3), 1e-4)) << file.fields();
+      EXPECT_TRUE(isApprox(map * Vec3(2, 3, 1), Vec3(-5, -5, 6), 1e-4)) << file.fields();
+    }
+}
+
+TEST(Frames, TimeAxisWithoutAnatomicalSpaceGivesAWarning) {
+  const TemporaryFolder folder;
+  const TimedNrrd space{" dimension: 3", "(2,0,0) (0,1,0) (0,0,3) none", "(1,2,3)",
+                        "space space space time"};
+  expectEachFrame(folder.write("d.nrrd", makeTimed(space.fields(), false)), 1);
+  const std::string fields = "sizes: 5 3 4 2\nkinds: time domain domain domain\n";
+  const auto path = folder.write("s.nrrd", makeTimed(fields + "spacings: 1 2 1 3\n", true));
+  expectEachFrame(path, 1);
+  EXPECT_TRUE(isApprox(readVolume(path).grid.spacing(), Vec3(2, 1, 3), 1e-9));
+  const auto bare = folder.write("b.nrrd", makeTimed(fields, true));
+  expectEachFrame(bare, 1);
+  EXPECT_TRUE(
+      isApprox(readVolume(bare, {.spacing = Vec3(2, 1, 3)}).grid.spacing(), Vec3(2, 1, 3), 1e-9));
+}
+
+TEST(Frames, TimeAxesThatCannotBeReadAreRefused) {
+  const TemporaryFolder folder;
+  const TimedNrrd good{": left-posterior-superior", "(2,0,0) (0,1,0) (0,0,3) none", "(1,2,3)",
+                       "domain domain domain time"};
+  const auto expectRefusal = [&](const std::string& text, const std::string& expected) {
+    const auto path = folder.write("v.nrrd", text);
+    expectRefused(path, expected, [&] { readVolume(path, {.frame = 0}); });
+  };
+  TimedNrrd file = good;
+  file.directions = "(2,0,0) none (0,1,0) (0,0,3)";
+  file.kinds = "domain time domain domain";
+  expectRefusal(makeTimed(file.fields(), false), "unsupported-file | 2");
+  file = good;
+  file.directions = "(2,0,0) none none (0,0,3)";
+  expectRefusal(makeTimed(file.fields(), false), "invalid-field: space directions");
+  file = good;
+  file.directions = "(2,0) (0,1) (3,3) none";
+  expectRefusal(makeTimed(file.fields(), false), "invalid-field: space directions");
+  file = good;
+  file.directions = "(2,0,0) (2,0,0) (0,0,3) none";
+  expectRefusal(makeTimed(file.fields(), false), "invalid-field: directions");
+  for (const char* spacings : {"1 2 1", "1 -2 1 3", "1 0 1 3"})
+    expectRefusal(makeTimed(std::string("sizes: 5 3 4 2\nkinds: time domain domain domain\n"
+                                        "spacings: ") +
+                                spacings + "\n",
+                            true),
+                  "invalid-field: spacings");
+  const std::string whole = makeTimed(good.fields(), false);
+  expectRefusal(whole.substr(0, whole.size() - 1), "damaged-file | 240 bytes");
+  const std::string packed = makeTimed(good.fields(), false, true);
+  expectRefusal(packed.substr(0, packed.size() / 2), "");
+  expectRefusal(makeTimed(good.fields(), false, false, "type: short\n"), "unsupported-file");
+  expectRefusal(makeTimed(good.fields(), false, false, "type: block\nendian: little\n"),
+                "invalid-field: type");
+  std::string huge = whole;
+  huge.replace(huge.find("sizes: 3 4 2 5"), 14, "sizes: 2147483647 2147483647 2147483647 5");
+  expectRefusal(huge, "damaged-file");
 }
 
 TEST(Frames, TruncatedFramesAreRefusedWhicheverIsRead) {

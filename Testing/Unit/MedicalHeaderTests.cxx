@@ -124,9 +124,10 @@ TEST_F(MedicalHeaders, ErrorNamesFieldAndCause) {
          "unsupported-file");
   const std::string series = head + "dimension: 4\nsizes: 3 4 2 1\n" + space +
                              "space directions: (1,0,0) (0,1,0) (0,0,1) none\n";
-  for (const std::string kinds : {"", "kinds: domain domain domain time\n"})
-    refuse(folder.write("four.nrrd", series + kinds + "\n" + std::string(24, 'x')),
-           "invalid-field: kinds");
+  refuse(folder.write("five.nrrd", head + "dimension: 5\nsizes: 3 4 2 1 1\n" + space +
+                                       "space directions: (1,0,0) (0,1,0) (0,0,1) none none\n\n" +
+                                       std::string(24, 'x')),
+         "invalid-field: kinds");
   EXPECT_EQ(readVolume(folder.write("one.nrrd", series + "kinds: domain domain domain list\n\n" +
                                                     std::string(24, 'x')))
                 .grid.size,

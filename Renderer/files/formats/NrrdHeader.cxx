@@ -38,26 +38,6 @@ void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
       throw fieldError(path, "sizes", "each must be an integer from 1 to 2147483647");
 }
 
-/// Lengths of the vectors in parentheses; nullopt: malformed vector.
-std::optional<std::vector<double>> parseVectorLengths(const std::string& text) {
-  std::vector<double> lengths;
-  for (std::size_t open = text.find('('); open != std::string::npos;
-       open = text.find('(', open + 1)) {
-    const std::size_t close = text.find(')', open);
-    if (close == std::string::npos)
-      return std::nullopt;
-    std::string inside = text.substr(open + 1, close - open - 1);
-    std::replace(inside.begin(), inside.end(), ',', ' ');
-    std::erase(inside, '+');
-    const auto numbers = parseNumbers(inside);
-    if (!numbers)
-      return std::nullopt;
-    lengths.push_back(
-        std::sqrt(std::inner_product(numbers->begin(), numbers->end(), numbers->begin(), 0.0)));
-  }
-  return lengths;
-}
-
 /// Number of axes that ITK places in space: all but lists, vectors and colors.
 std::size_t countSpatialAxes(const Fields& fields) {
   if (!fields.contains("kinds"))
@@ -71,16 +51,19 @@ std::size_t countSpatialAxes(const Fields& fields) {
 
 /// Checks space directions; ITK replaces missing ones by 1 mm.
 void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields) {
-  const auto lengths = parseVectorLengths(findValue(fields, "spacedirections"));
-  constexpr double maxSpacing = 1e9; // mm; limit of every spacing
-  const auto isUsable = [](double length) {
+  auto vectors = parseNrrdVectors(findValue(fields, "spacedirections"));
+  if (vectors)
+    std::erase(*vectors, std::vector<double>());
+  const auto isUsable = [](const std::vector<double>& v) {
+    constexpr double maxSpacing = 1e9; // mm; limit of every spacing
+    const double length = std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
     return length >= 1.0 / maxSpacing && length <= maxSpacing;
   };
-  if (!lengths || !std::all_of(lengths->begin(), lengths->end(), isUsable))
+  if (!vectors || !std::all_of(vectors->begin(), vectors->end(), isUsable))
     throw fieldError(path, "space directions",
                      "each must be a vector of 1e-9 to 1e9 mm, or none; fix the header");
-  if (!lengths->empty() && lengths->size() < std::min<std::size_t>(countSpatialAxes(fields), 3))
-    throw fieldError(path, "space directions", "has ", lengths->size(),
+  if (!vectors->empty() && vectors->size() < std::min<std::size_t>(countSpatialAxes(fields), 3))
+    throw fieldError(path, "space directions", "has ", vectors->size(),
                      " vectors; write one per spatial axis");
 }
 
@@ -110,7 +93,7 @@ void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
 void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
   const std::string name = toLower(findValue(fields, "space"));
   const bool hasTime = name.ends_with("-time") || name.ends_with("st"); // RAST and similar
-  if (name.empty() || hasTime)
+  if (name.empty() || hasTime || findNrrdFrameAxis(fields))
     return;
   if (const std::size_t count = countSpatialAxes(fields); count > 3)
     throw fieldError(path, "kinds", count,
@@ -203,6 +186,54 @@ void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
       throw fieldError(header, "samples", "a number has more than ", maxLineBytes,
                        " characters; write the file again");
   }
+}
+
+std::optional<std::vector<std::vector<double>>> parseNrrdVectors(std::string_view text) {
+  std::vector<std::vector<double>> vectors;
+  for (text = trim(text); !text.empty(); text = trim(text)) {
+    std::vector<double>& vector = vectors.emplace_back();
+    if (text.front() != '(') { // "none"
+      text.remove_prefix(std::min(text.find_first_of(" \t("), text.size()));
+      continue;
+    }
+    const std::size_t close = text.find(')');
+    if (close == std::string_view::npos)
+      return std::nullopt;
+    std::string inside(text.substr(1, close - 1));
+    std::replace(inside.begin(), inside.end(), ',', ' ');
+    std::erase(inside, '+');
+    auto numbers = parseNumbers(inside);
+    if (!numbers || numbers->empty())
+      return std::nullopt;
+    vector = *std::move(numbers);
+    text.remove_prefix(close + 1);
+  }
+  return vectors;
+}
+
+std::optional<std::size_t> findNrrdFrameAxis(const std::map<std::string, std::string>& fields) {
+  constexpr std::size_t axes = 4;
+  const std::vector<std::string> kinds = splitWords(toLower(findValue(fields, "kinds")));
+  const auto vectors = parseNrrdVectors(findValue(fields, "spacedirections"));
+  if (parseInteger(findValue(fields, "dimension")) != axes || !vectors ||
+      (!kinds.empty() && kinds.size() != axes) || (!vectors->empty() && vectors->size() != axes))
+    return std::nullopt;
+  const auto hasSpatialPart = [](const std::vector<double>& vector) {
+    const auto end = vector.begin() + std::min<std::ptrdiff_t>(3, std::ssize(vector));
+    return std::any_of(vector.begin(), end, [](double x) { return x != 0.0; });
+  };
+  std::optional<std::size_t> found;
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    const std::string kind = kinds.empty() ? "???" : kinds[axis];
+    const bool isUnknown = kind == "???" || kind == "none" || kind == "domain" || kind == "space";
+    const bool isPlaced = vectors->empty() || hasSpatialPart((*vectors)[axis]);
+    if (kind != "time" && !(isUnknown && !isPlaced))
+      continue;
+    if (found)
+      return std::nullopt;
+    found = axis;
+  }
+  return found;
 }
 
 bool hasNrrdSpacing(const NrrdHeaderText& header) {

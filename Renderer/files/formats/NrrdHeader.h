@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fenestra {
@@ -19,6 +21,13 @@ struct NrrdHeaderText {
 /// Throws Error (input) if the file is not NRRD, for values known to crash ITK's reader, and for a
 /// geometry that ITK would silently replace.
 NrrdHeaderText readNrrdHeader(const std::filesystem::path& path);
+
+/// Vectors in parentheses, one per axis; empty ones for "none". nullopt: a malformed vector.
+std::optional<std::vector<std::vector<double>>> parseNrrdVectors(std::string_view text);
+
+/// The axis of time in a header of four axes: of kind "time", or of no known kind and without a
+/// direction in space. nullopt: none, several, or components (a list, a vector).
+std::optional<std::size_t> findNrrdFrameAxis(const std::map<std::string, std::string>& fields);
 
 /// True if the header states the voxel spacing; otherwise ITK assumes 1 mm.
 bool hasNrrdSpacing(const NrrdHeaderText& header);

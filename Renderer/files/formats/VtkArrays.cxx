@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
-#include <ranges>
 #include <string_view>
 #include <utility>
 
@@ -92,10 +91,10 @@ void VtkArrayReader::readStored(char* to, std::size_t bytes) {
 std::uint64_t VtkArrayReader::readWord() {
   std::string bytes(m_encoding.has64BitHeaders ? 8 : 4, '\0');
   readStored(bytes.data(), bytes.size());
-  if (m_encoding.order == std::endian::big)
+  if (m_encoding.order == std::endian::little)
     std::ranges::reverse(bytes);
   std::uint64_t word = 0;
-  for (const char byte : bytes | std::views::reverse)
+  for (const char byte : bytes)
     word = word << 8 | static_cast<unsigned char>(byte);
   return word;
 }

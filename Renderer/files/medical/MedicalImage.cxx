@@ -4,6 +4,7 @@
 #include "files/medical/FrameSource.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/medical/NiftiSamples.h"
+#include "files/medical/NrrdFrames.h"
 #include "files/medical/SampleStream.h"
 #include "files/medical/SuppressItkOutput.h"
 #include "files/medical/VtkImage.h"
@@ -234,6 +235,33 @@ void readVtk(const std::filesystem::path& path, const SampleConsumer& consume,
   consume(image, read.samples);
 }
 
+/// Warns about what the header leaves open.
+void warnAssumptions(const std::filesystem::path& path, bool hasSpacing, bool hasAxes,
+                     std::vector<Message>& warnings) {
+  if (!hasSpacing || !hasAxes)
+    warnings.push_back(makeMessage(
+        ErrorCode::assumedGeometry, path, hasSpacing ? "" : "has no spacing: 1 mm is assumed",
+        hasSpacing || hasAxes ? "" : "; ",
+        hasAxes ? "" : "has no space: axes are assumed toward left, posterior and superior"));
+}
+
+/// Reads a NRRD with a time axis that ITK does not support.
+void readNrrdFrames(const std::filesystem::path& path, const StoredSamples& stored,
+                    const NrrdFrames& read, Components allowed, const SampleConsumer& consume,
+                    const VolumeChoice& choice) {
+  if (allowed != Components::oneFrame && read.count > 1)
+    throw inputError(ErrorCode::unsupportedFile, path, "has ", read.count,
+                     " frames; extract one of them");
+  const Mat3& directions = read.indexToRas.linear();
+  checkGeometry(path, directions, directions.columnNorms(), read.indexToRas.translation());
+  MedicalImage image{.grid = {read.size, read.indexToRas}, .frameCount = read.count};
+  warnAssumptions(path, stored.hasSpacing || choice.spacing, stored.hasAxes, image.warnings);
+  const FrameChoice frame{read.count,
+                          chooseFrame(path.string(), choice.frame, read.count, image.warnings),
+                          read.isInterleaved};
+  consume(image, pickFrame(openNrrdFrames(path, stored, read), frame));
+}
+
 void readChecked(const std::filesystem::path& path, MedicalFormat format, Components allowed,
                  const SampleConsumer& consume, const VolumeChoice& choice) {
   if (format == MedicalFormat::vtk)
@@ -246,6 +274,10 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
     return readNifti(path, stored, readMghHeader(path), allowed, consume, choice);
   if (stored.hasSpacing)
     refuseSpacing(path.string(), choice);
+  if (format == MedicalFormat::nrrd)
+    if (const auto frames = findNrrdFrames(path, choice.spacing);
+        frames && (allowed == Components::oneFrame || !frames->hasSpaceTime)) // else: layers
+      return readNrrdFrames(path, stored, *frames, allowed, consume, choice);
   const SuppressItkOutput suppress;
   const auto io = makeImageIo(format);
   io->SetFileName(path.string());
@@ -260,12 +292,7 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
                      .fields = readTextFields(*io)};
   // The oldest segmentations of Slicer have another convention (SegmentationReader.cxx).
   const bool hasAxes = stored.hasAxes || image.fields.contains("Segmentation_Extent");
-  const bool hasSpacing = stored.hasSpacing || choice.spacing;
-  if (!hasSpacing || !hasAxes)
-    image.warnings.push_back(makeMessage(
-        ErrorCode::assumedGeometry, path, hasSpacing ? "" : "has no spacing: 1 mm is assumed",
-        hasSpacing || hasAxes ? "" : "; ",
-        hasAxes ? "" : "has no space: axes are assumed toward left, posterior and superior"));
+  warnAssumptions(path, stored.hasSpacing || choice.spacing, hasAxes, image.warnings);
   if (image.hasFrames)
     image.components = countFrames(*io);
   if (allowed == Components::oneFrame) {
