@@ -4,6 +4,8 @@
 #include "Approx.h"
 #include "DicomSliceFiles.h"
 
+#include <array>
+
 namespace fenestra::DicomLayoutTests {
 namespace {
 
@@ -224,6 +226,82 @@ TEST(DicomLayout, AnAbortedLastTimeIsLeftOut) {
   const Volume volume = read(folder.path());
   EXPECT_EQ(volume.frameCount, 3u);
   EXPECT_EQ(countWarnings(volume, ErrorCode::omittedSlices), 1u);
+}
+
+/// Elements of a phase: temporal position, acquisition and acquisition time, unless negative.
+std::vector<Element> makePhase(int temporal, int acquisition, int time) {
+  std::vector<Element> more = {makeDecimals(0x00180050, std::vector{2.0})};
+  if (temporal >= 0)
+    more.push_back(makeText(0x00200100, "IS", std::to_string(temporal)));
+  if (acquisition >= 0)
+    more.push_back(makeText(0x00200012, "IS", std::to_string(acquisition)));
+  if (time >= 0)
+    more.push_back(makeText(0x00080032, "TM", std::to_string(102000 + time)));
+  return more;
+}
+
+/// Writes slices 2 mm thick with the values `first`, `first` + 1, ...
+void writePhase(const TemporaryFolder& folder, int first, const std::vector<double>& depths,
+                const std::vector<Element>& more) {
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const int value = first + static_cast<int>(i);
+    folder.write(
+        std::to_string(value),
+        makeSlice({.value = 1.0 * value, .position = Vec3(0, 0, depths[i]), .more = more}));
+  }
+}
+
+TEST(DicomLayout, PhasesWhosePositionsInterleaveAreFrames) {
+  for (const auto& [temporal, acquisition, time] :
+       {std::array{1, -1, -1}, std::array{-1, 1, -1}, std::array{-1, -1, 1}})
+    for (const double shift : {1.0, 0.7, 0.02}) { // half a slice, others, jitter
+      const TemporaryFolder folder;
+      for (const int k : {0, 1})
+        writePhase(folder, 10 * k, {0 + k * shift, 2 + k * shift, 4 + k * shift, 6 + k * shift},
+                   makePhase(temporal * k, acquisition * k, time * k));
+      for (const std::size_t k : {0U, 1U}) {
+        const Volume volume = read(folder.path(), {.frame = k});
+        EXPECT_EQ(volume.frameCount, 2u);
+        EXPECT_EQ(getScalar(volume, 3), 2.0 * (10.0 * static_cast<double>(k) + 3) - 1000.0);
+        EXPECT_EQ(volume.grid.size.z(), 4);
+        EXPECT_TRUE(volume.warnings.empty());
+      }
+    }
+}
+
+TEST(DicomLayout, AShorterAcquisitionBetweenTheSlicesIsAFrame) {
+  const TemporaryFolder folder;
+  writePhase(folder, 0, {0, 2, 4, 6, 8, 10}, makePhase(-1, 1, 0));
+  writePhase(folder, 10, {3.2, 5.2, 7.2}, makePhase(-1, 2, 60));
+  EXPECT_EQ(getScalars(read(folder.path(), {.frame = 0})),
+            (std::vector{0.0, 1.0, 2.0, 3.0, 4.0, 5.0}));
+  EXPECT_EQ(getScalars(read(folder.path(), {.frame = 1})), (std::vector{10.0, 11.0, 12.0}));
+}
+
+TEST(DicomLayout, AcquisitionsOfOneVolumeStayTogether) {
+  const TemporaryFolder parts, odd;
+  writePhase(parts, 0, {0, 2, 4, 6}, makePhase(-1, 1, 0));
+  writePhase(parts, 10, {8, 10, 12}, makePhase(-1, 2, 60));
+  writePhase(parts, 20, {14, 16, 18}, makePhase(-1, 3, 90));
+  writePhase(odd, 0, {0, 4, 8, 12}, makePhase(-1, 1, 0)); // odd slices are scanned first
+  writePhase(odd, 10, {2, 6, 10}, makePhase(-1, 1, 60));
+  for (const TemporaryFolder* folder : {&parts, &odd}) {
+    const Volume volume = read(folder->path());
+    EXPECT_EQ(volume.frameCount, 1u);
+    EXPECT_EQ(volume.grid.size.z(), folder == &parts ? 10 : 7);
+    EXPECT_TRUE(volume.warnings.empty());
+  }
+}
+
+TEST(DicomLayout, KernelsAreVolumes) {
+  const TemporaryFolder folder;
+  writeRepeated(folder, 2, [](int k) {
+    return std::vector{makeText(0x00181210, "SH", k == 0 ? "B30f" : "I70f\\2")};
+  });
+  fenestra::expectRefused(folder.path(), "ambiguous-volume | kernel B30f | kernel I70f/2",
+                          [&] { read(folder.path()); });
+  EXPECT_EQ(getScalars(read(folder.path(), {.name = "kernel I70f/2"})),
+            (std::vector{10.0, 11.0, 12.0}));
 }
 
 TEST(DicomLayout, AKeyThatVariesFromSliceToSliceDividesNothing) {

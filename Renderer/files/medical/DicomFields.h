@@ -53,6 +53,7 @@ inline constexpr auto dicomFields = [] {
       {0x00181074, &H::dose, text, 0x00540016},
       {0x00181075, &H::halfLife, text, 0x00540016},
       {0x00181078, &H::injectionDateTime, text, 0x00540016},
+      {0x00181210, &H::convolutionKernel, text, 0x00189314},
       {0x00209153, &H::triggerTime, fd, 0x00189118},
       {0x00209241, &H::cardiacPhase, fd, 0x00189118},
       {0x0019100c, &H::bValue, text, 0, false, "SIEMENS MR HEADER"},

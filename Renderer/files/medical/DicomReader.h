@@ -24,6 +24,7 @@ struct DicomHeader {
   std::string referencedSeries; ///< uid; of segmentations
   std::string imageType;        ///< backslash-separated
   std::string photometric;
+  std::string convolutionKernel;
   std::string contrastAgent;           ///< ContrastBolusAgent; empty: none stated
   std::string characterSet;            ///< of the texts
   std::vector<double> position;        ///< ImagePositionPatient: center of the first voxel, LPS mm

@@ -3,14 +3,15 @@
 // Left out, with a warning that counts them: localizers; slices that cannot be placed, or whose
 // size, orientation or spacing is not that of most slices; copies of another slice (equal instance
 // uid and position, or equal position and voxels). What remains is one volume unless several slices
-// share a position. Then the series is divided by the echo time, b-value and image type, as
-// far as each divides it into nearly complete volumes; and each volume into frames by the temporal
-// position, cardiac phase, trigger time, acquisition or its time, else in the order of the instance
-// numbers if all positions have equally many slices.
+// share a position. Then the series is divided by the echo time, b-value, image type and
+// convolution kernel, as far as each divides it into nearly complete volumes; and each volume into
+// frames by the temporal position, cardiac phase, trigger time, acquisition or its time, else in
+// the order of the instance numbers if all positions have equally many slices. Temporal positions
+// and acquisitions are frames also if their positions interleave (DicomPhases.h).
 
 #include "base/Distribution.h"
 #include "base/Error.h"
-#include "files/medical/DicomSeries.h"
+#include "files/medical/DicomPhases.h"
 
 #include <algorithm>
 #include <map>
@@ -24,6 +25,14 @@ namespace {
 using Groups = std::vector<DicomSlices>;
 
 constexpr double samePosition = 1e-3; ///< mm
+
+/// Greatest distance along the normal of slices at one position, mm: phases of a scan may differ by
+/// a small part of the slice thickness.
+double findTolerance(const DicomHeader& h) {
+  constexpr double fraction = 0.02;
+  return h.sliceThickness.size() == 1 ? std::max(samePosition, fraction * h.sliceThickness[0])
+                                      : samePosition;
+}
 
 /// True if the slice has what a volume needs. `isComplete` is checked when it is read.
 bool canBePlaced(const DicomSlice& slice) {
@@ -92,8 +101,9 @@ public:
     for (std::size_t i = 0; i < slices.size(); ++i)
       depths.emplace_back(getPosition(slices[i]).dot(normal), i);
     std::ranges::sort(depths);
+    const double tolerance = findTolerance(slices.front().header);
     for (std::size_t i = 0; i < depths.size(); ++i) {
-      if (i == 0 || depths[i].first - depths[i - 1].first > samePosition)
+      if (i == 0 || depths[i].first - depths[i - 1].first > tolerance)
         m_indices.emplace_back();
       m_indices.back().push_back(depths[i].second);
     }
@@ -146,12 +156,23 @@ KeyValue getType(const DicomHeader& h) {
                                 words.end());
   return {0.0, concat("type ", join(kind, "/"))};
 }
+KeyValue getKernel(const DicomHeader& h) {
+  return {0.0, concat("kernel ", replaceAll(h.convolutionKernel, "\\", "/"))};
+}
 
-constexpr GetKey partKeys[] = {getEcho, getDiffusion, getType};
-constexpr GetKey timeKeys[] = {
-    getNumber<&DicomHeader::temporalPosition>, getNumber<&DicomHeader::cardiacPhase>,
-    getNumber<&DicomHeader::triggerTime>, getNumber<&DicomHeader::acquisition>,
-    getNumber<&DicomHeader::acquisitionTime>};
+constexpr GetKey partKeys[] = {getEcho, getDiffusion, getType, getKernel};
+
+/// Whether groups with different values can be phases whose positions interleave.
+enum class Interleaving { never, possible, certain };
+struct TimeKey {
+  GetKey get;
+  Interleaving interleaving = Interleaving::never;
+};
+constexpr TimeKey timeKeys[] = {{getNumber<&DicomHeader::temporalPosition>, Interleaving::certain},
+                                {getNumber<&DicomHeader::cardiacPhase>},
+                                {getNumber<&DicomHeader::triggerTime>},
+                                {getNumber<&DicomHeader::acquisition>, Interleaving::possible},
+                                {getNumber<&DicomHeader::acquisitionTime>, Interleaving::possible}};
 
 /// Divides slices of which several share a position, by the values of a key, if these are nearly
 /// complete volumes; incomplete ones are left out and counted. Else returns all together.
@@ -179,6 +200,30 @@ std::vector<std::pair<std::string, DicomSlices>> divide(DicomSlices slices, GetK
   }
   leftOut += slices.size() - kept;
   return parts;
+}
+
+/// Divides slices into phases whose positions interleave; those of less than half of the largest
+/// are left out and counted. Else returns all together.
+Groups divideInterleaved(DicomSlices slices, const TimeKey& key, std::size_t& leftOut) {
+  std::map<KeyValue, DicomSlices> byValue;
+  if (key.interleaving != Interleaving::never)
+    for (const DicomSlice& slice : slices)
+      byValue[key.get(slice.header)].push_back(slice);
+  Groups groups;
+  for (auto& [value, group] : byValue)
+    groups.push_back(std::move(group));
+  if (groups.size() < 2)
+    return {std::move(slices)};
+  Groups phases = joinPhases(groups, key.interleaving == Interleaving::certain);
+  if (phases.empty())
+    return {std::move(slices)};
+  const std::size_t most = std::ranges::max_element(phases, {}, &DicomSlices::size)->size();
+  std::erase_if(phases, [&](const DicomSlices& phase) {
+    const bool isSmall = 2 * phase.size() < most;
+    leftOut += isSmall ? phase.size() : 0;
+    return isSmall;
+  });
+  return phases;
 }
 
 /// Divides by the instance numbers if all positions have equally many slices; else returns all
@@ -222,11 +267,17 @@ std::size_t removeEqualVoxels(DicomSlices& slices) {
 /// Frames over time of one volume. Sets how many slices are left out as copies.
 Groups divideByTime(DicomSlices slices, std::size_t& leftOut, std::size_t& copies) {
   Groups frames = {std::move(slices)};
-  for (const GetKey key : timeKeys) {
+  for (const TimeKey& key : timeKeys) {
     Groups divided;
-    for (DicomSlices& frame : frames)
-      for (auto& [text, part] : divide(std::move(frame), key, leftOut))
-        divided.push_back(std::move(part));
+    for (DicomSlices& frame : frames) {
+      auto parts = divide(std::move(frame), key.get, leftOut);
+      if (parts.size() > 1)
+        for (auto& [text, part] : parts)
+          divided.push_back(std::move(part));
+      else
+        std::ranges::move(divideInterleaved(std::move(parts.front().second), key, leftOut),
+                          std::back_inserter(divided));
+    }
     frames = std::move(divided);
   }
   Groups all;
@@ -253,7 +304,7 @@ void addWarnings(const LeftOut& out, const std::string& name, std::size_t all,
   warn(out.unplaced, "no gray images, or without a position");
   warn(out.geometry, "their size, spacing or orientation is not that of most slices");
   warn(out.copies, "copies of other slices");
-  warn(out.incomplete, "their volume is less than half complete");
+  warn(out.incomplete, "they are less than half of a volume");
 }
 
 DicomSeries describe(const DicomSlice& slice) {
