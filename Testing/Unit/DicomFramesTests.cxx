@@ -160,27 +160,27 @@ DicomHeader makePet() {
 }
 
 TEST(StandardUptake, DoseDecaysFromTheInjectionToTheSeries) {
-  std::string missing;
+  std::string fault;
   DicomHeader h = makePet();
   const double atInjection = 70e3 / 3.5e8, decay = std::exp2(3600.0 / 6586.2);
-  EXPECT_NEAR(computeSuvFactor(h, missing).value(), atInjection * decay, 1e-12);
+  EXPECT_NEAR(computeSuvFactor(h, fault).value(), atInjection * decay, 1e-12);
   h.injectionDateTime = "20240229230000.0+0100"; // the day before, in a leap year
-  EXPECT_NEAR(computeSuvFactor(h, missing).value(), atInjection * std::exp2(12 * 3600.0 / 6586.2),
+  EXPECT_NEAR(computeSuvFactor(h, fault).value(), atInjection * std::exp2(12 * 3600.0 / 6586.2),
               1e-9);
   h.injectionDateTime = "";
   h.seriesTime = "003000"; // past midnight
   h.injectionTime = "233000";
-  EXPECT_NEAR(computeSuvFactor(h, missing).value(), atInjection * decay, 1e-12);
+  EXPECT_NEAR(computeSuvFactor(h, fault).value(), atInjection * decay, 1e-12);
   h.decayCorrection = "ADMIN";
-  EXPECT_NEAR(computeSuvFactor(h, missing).value(), atInjection, 1e-12);
+  EXPECT_NEAR(computeSuvFactor(h, fault).value(), atInjection, 1e-12);
 }
 
 TEST(StandardUptake, IncompleteHeadersGiveNoFactor) {
-  std::string missing;
+  std::string fault;
   const auto expectNone = [&](auto member, const auto& value) {
     DicomHeader h = makePet();
     h.*member = value;
-    EXPECT_FALSE(computeSuvFactor(h, missing));
+    EXPECT_FALSE(computeSuvFactor(h, fault));
   };
   expectNone(&DicomHeader::units, "CNTS");
   expectNone(&DicomHeader::decayCorrection, "NONE");
@@ -189,7 +189,52 @@ TEST(StandardUptake, IncompleteHeadersGiveNoFactor) {
   expectNone(&DicomHeader::weight, std::nullopt);
   expectNone(&DicomHeader::dose, 0.0);
   expectNone(&DicomHeader::halfLife, std::nullopt);
-  EXPECT_EQ(missing.find("RadionuclideHalfLife"), 0u);
+  EXPECT_NE(fault.find("RadionuclideHalfLife"), std::string::npos);
+}
+
+TEST(StandardUptake, ImplausibleValuesGiveNoFactor) {
+  std::string fault;
+  const auto expectNone = [&](auto member, double value, const char* text) {
+    DicomHeader h = makePet();
+    h.*member = value;
+    EXPECT_FALSE(computeSuvFactor(h, fault));
+    EXPECT_NE(fault.find(text), std::string::npos) << fault;
+  };
+  expectNone(&DicomHeader::dose, 370.0, "370 Bq"); // MBq
+  expectNone(&DicomHeader::dose, 0.0, "0 Bq");
+  expectNone(&DicomHeader::weight, 70000.0, "70000 kg"); // g
+  expectNone(&DicomHeader::weight, -1.0, "-1 kg");
+}
+
+TEST(StandardUptake, TheFirstAcquisitionPrecedesAProcessedSeries) {
+  std::string fault;
+  const double atInjection = 70e3 / 3.5e8, decay = std::exp2(3600.0 / 6586.2);
+  DicomHeader h = makePet();
+  h.acquisitionTime = 110000.0;
+  h.acquisitionDate = "20240301";
+  h.seriesTime = "115900"; // processed later
+  EXPECT_NEAR(computeSuvFactor(h, fault).value(), atInjection * decay, 1e-12);
+  h.seriesDate = "20240303"; // without a date of the injection
+  EXPECT_NEAR(computeSuvFactor(h, fault).value(), atInjection * decay, 1e-12);
+  h.injectionDateTime = "20240301100000";
+  EXPECT_NEAR(computeSuvFactor(h, fault).value(), atInjection * decay, 1e-12);
+  h = makePet();
+  h.acquisitionTime = 113000.0; // of a later bed position
+  EXPECT_NEAR(computeSuvFactor(h, fault).value(), atInjection * decay, 1e-12);
+}
+
+TEST(StandardUptake, TheFirstAcquisitionIsSearchedInAllSlices) {
+  DicomSeries series;
+  for (const double time : {103000.0, 100000.0, 110000.0}) {
+    DicomHeader h = makePet();
+    h.acquisitionTime = time;
+    series.frames.push_back({{"a", h}});
+  }
+  std::vector<Message> warnings;
+  DicomSlices slices = series.frames[0];
+  convertToSuv(slices, series, "x", warnings);
+  EXPECT_NEAR(slices[0].header.slope, 70e3 / 3.5e8, 1e-12);
+  EXPECT_EQ(warnings.size(), 1u);
 }
 
 TEST(StandardUptake, VoxelsOfAPetAreSuv) {
@@ -212,6 +257,9 @@ TEST(StandardUptake, VoxelsOfAPetAreSuv) {
   const Volume counts = write("CNTS");
   EXPECT_EQ(counts.maximum, 10000.0);
   expectMessage(counts.warnings.at(0), "assumed-units | BQML");
+  const Volume ready = write("GML");
+  EXPECT_EQ(ready.maximum, 10000.0);
+  EXPECT_TRUE(ready.warnings.empty());
 }
 
 } // namespace

@@ -38,6 +38,7 @@ inline constexpr auto dicomFields = [] {
       {0x00080016, &H::sopClass},
       {0x00080018, &H::sopUid},
       {0x00080021, &H::seriesDate},
+      {0x00080022, &H::acquisitionDate},
       {0x00080031, &H::seriesTime},
       {0x00080032, &H::acquisitionTime},
       {0x00080060, &H::modality},

@@ -38,7 +38,8 @@ struct DicomHeader {
   std::optional<double> instance, echoTime, bValue, temporalPosition, cardiacPhase, triggerTime,
       acquisition, acquisitionTime;
   // Of a PET: dates and times as in the file, decimals
-  std::string units, decayCorrection, seriesDate, seriesTime, injectionTime, injectionDateTime;
+  std::string units, decayCorrection, seriesDate, seriesTime, acquisitionDate, injectionTime,
+      injectionDateTime;
   std::optional<double> weight;   ///< of the patient, kg
   std::optional<double> dose;     ///< injected, Bq
   std::optional<double> halfLife; ///< s

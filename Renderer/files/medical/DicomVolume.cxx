@@ -180,7 +180,7 @@ Volume readFrame(const DicomSeries& series, const std::string& name, const Volum
   const std::size_t frame = chooseFrame(name, choice.frame, series.frames.size(), warnings);
   Stack stack = makeStack(series.frames[frame], name, warnings);
   if (stack.header().modality == "PT")
-    convertToSuv(stack.slices, name, warnings);
+    convertToSuv(stack.slices, series, name, warnings);
   Volume volume = makeVolume(name, makeGrid(stack), readAll(stack));
   volume.frameCount = series.frames.size();
   std::ranges::move(warnings, std::back_inserter(volume.warnings));
