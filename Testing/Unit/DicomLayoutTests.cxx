@@ -156,6 +156,13 @@ TEST(DicomLayout, CopiesAreLeftOut) {
   EXPECT_EQ(countWarnings(other, ErrorCode::omittedSlices), 1u);
 }
 
+TEST(DicomLayout, MosaicsAreRefused) {
+  const TemporaryFolder folder;
+  folder.write("a",
+               makeSlice({.more = {makeText(0x00080008, "CS", "ORIGINAL\\PRIMARY\\M\\MOSAIC")}}));
+  fenestra::expectRefused(folder / "a", "unsupported-file", [&] { read(folder.path()); });
+}
+
 // ---- several volumes in a series
 
 /// Writes 3 positions with `count` slices each. `more` adds elements to the k-th.

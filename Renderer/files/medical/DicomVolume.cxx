@@ -18,6 +18,12 @@ using Path = std::filesystem::path;
 
 constexpr double maxLength = 1e9; ///< mm, as in the other formats
 
+/// True for an image that Siemens composes of the slices of a volume.
+bool isMosaic(const DicomHeader& h) {
+  const std::vector<std::string> words = split(h.imageType, '\\');
+  return std::ranges::find(words, "MOSAIC") != words.end();
+}
+
 /// Throws Error (input) unless the slice can be part of a volume.
 void checkSlice(const DicomSlice& slice) {
   const DicomHeader& h = slice.header;
@@ -29,6 +35,10 @@ void checkSlice(const DicomSlice& slice) {
                      "is damaged or truncated; export the series again");
   if (!isImage(h))
     refuse("PixelData", "is missing; give a series of images");
+  if (isMosaic(h))
+    throw inputError(ErrorCode::unsupportedFile, slice.path,
+                     "is a mosaic, which holds many slices side by side; convert the series, for "
+                     "example with dcm2niix, and use the volume file");
   if (h.samples != 1 || !h.photometric.starts_with("MONOCHROME"))
     refuse("PhotometricInterpretation",
            "is not MONOCHROME with one sample per voxel; give a series "
