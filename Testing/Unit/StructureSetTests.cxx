@@ -223,6 +223,21 @@ TEST(StructureSet, HolesAreContoursOrKeyholes) {
     }
 }
 
+TEST(StructureSet, ExclusiveContoursLeaveHoles) {
+  const TemporaryFolder folder;
+  std::vector<Contour> contours;
+  for (int z = 0; z < 3; ++z)
+    for (const double radius : {9.3, 4.3})
+      contours.push_back(makeCircle(Vec3(0, 0, z), Mat3::Identity(), radius));
+  const Grid volume = makeVolume(Vec3::Zero(), Mat3::Identity(), {1, 1, 1});
+  const Segmentation read = readSegmentation(
+      folder.write("s.dcm",
+                   makeStructureFile({{.contours = contours, .type = "CLOSEDPLANAR_XOR"}})),
+      &volume);
+  EXPECT_TRUE(sample(read).contains(Vec3(7, 0, 1)));
+  EXPECT_FALSE(sample(read).contains(Vec3(0, 0, 1)));
+}
+
 TEST(StructureSet, SeveralAndRepeatedContoursOfASlice) {
   const TemporaryFolder folder;
   std::vector<Contour> contours;

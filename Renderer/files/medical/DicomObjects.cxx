@@ -99,7 +99,8 @@ void describeContours(const DataSet& roi, ReplyWriter& reply) {
   const DicomItems contours(roi, {0x3006, 0x0040});
   std::vector<std::size_t> closed;
   for (std::size_t i = 0; i < contours.size(); ++i)
-    if (getText(contours[i], {0x3006, 0x0042}).starts_with("CLOSED_PLANAR")) // or with a suffix
+    if (const std::string type = getText(contours[i], {0x3006, 0x0042});
+        type.starts_with("CLOSED_PLANAR") || type == "CLOSEDPLANAR_XOR") // the former: or a suffix
       closed.push_back(i);
   reply.put(std::vector{static_cast<double>(closed.size())});
   for (const std::size_t i : closed)
