@@ -33,7 +33,7 @@ FENESTRA_FUZZ(Dicom, input) {
   using namespace fenestra;
   const std::vector<DicomHeader> headers = [input] {
     try {
-      return parseDicomHeaders(input);
+      return parseDicomHeaders(input, "slice.dcm");
     } catch (const std::runtime_error&) { // as DicomReader does
       throw inputError("slice.dcm", "is not a valid reply");
     }

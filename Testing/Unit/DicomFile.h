@@ -22,7 +22,7 @@ struct Element {
   std::vector<std::string> fragments = {}; ///< of compressed pixels, after an empty offset table
 };
 
-enum class Syntax { implicitLittle, explicitLittle, explicitBig, deflated, rle };
+enum class Syntax { implicitLittle, explicitLittle, explicitBig, deflated, rle, htj2k };
 
 // ---- values
 
@@ -159,11 +159,13 @@ inline std::string encodeRle(const std::string& pixels, std::size_t bytesPerPixe
   return header + segments;
 }
 
-/// A file with its meta information. `hasLengths`: sequences have defined lengths.
-inline std::string makeFile(const Item& elements, Syntax syntax, bool hasLengths = true) {
-  const char* const uids[] = {"1.2.840.10008.1.2", "1.2.840.10008.1.2.1", "1.2.840.10008.1.2.2",
-                              "1.2.840.10008.1.2.1.99", "1.2.840.10008.1.2.5"};
-  std::string sopClass;
+/// A file with its meta information. `hasLengths`: sequences have defined lengths. `sopClass`: of a
+/// data set that does not state it.
+inline std::string makeFile(const Item& elements, Syntax syntax, bool hasLengths = true,
+                            std::string sopClass = {}) {
+  const char* const uids[] = {"1.2.840.10008.1.2",   "1.2.840.10008.1.2.1",
+                              "1.2.840.10008.1.2.2", "1.2.840.10008.1.2.1.99",
+                              "1.2.840.10008.1.2.5", "1.2.840.10008.1.2.4.201"};
   for (const Element& element : elements)
     if (element.tag == 0x00080016)
       sopClass = element.value;

@@ -112,6 +112,68 @@ TEST(DicomLayout, SegmentationsReferToASeriesOrItsFrame) {
             (std::vector{folder / "frame", folder / "series"}));
 }
 
+TEST(DicomLayout, UnsupportedTransferSyntaxesAreNamed) {
+  const TemporaryFolder folder;
+  folder.write("a", makeSlice({}, Syntax::htj2k));
+  for (const auto& read : std::vector<std::function<void()>>{
+           [&] { findDicomSeries(folder.path()); }, [&] { findSeriesOfFile(folder / "a"); },
+           [&] { readDicomVolume({folder / "a"}, "x"); }})
+    fenestra::expectRefused(folder / "a", "unsupported-file | HTJ2K | 1.2.840.10008.1.2.4.201",
+                            read);
+  folder.write("b", makeSlice({}, Syntax::htj2k));
+  folder.write("c", makeSlice({.value = 3}));
+  const Volume volume = read(folder.path());
+  EXPECT_EQ(getScalars(volume), std::vector{3.0});
+  ASSERT_EQ(volume.warnings.size(), 1u);
+  expectMessage(volume.warnings[0], "omitted-slices: a | HTJ2K | 2");
+}
+
+TEST(DicomLayout, ObjectsWithoutAScanAreNamed) {
+  const TemporaryFolder folder;
+  folder.write("a", makeSlice({.more = {makeText(0x00080060, "CS", "RTDOSE")}}));
+  fenestra::expectRefused(folder / "a", "unsupported-file | RT Dose",
+                          [&] { findSeriesOfFile(folder / "a"); });
+}
+
+TEST(DicomLayout, ADirectoryFileStandsForItsFolder) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "IMAGES");
+  folder.write("IMAGES/a", makeSlice({.value = 3}));
+  const std::string directory = dicom::makeFile(
+      {makeText(0x00041130, "CS", "DISC")}, Syntax::explicitLittle, true, "1.2.840.10008.1.3.10");
+  folder.write("DICOMDIR", directory);
+  EXPECT_EQ(findSeriesOfFile(folder / "DICOMDIR").series.size(), 1u);
+}
+
+TEST(DicomLayout, FilesMayLackPreambleAndMetaInformation) {
+  const TemporaryFolder folder;
+  constexpr std::size_t preamble = 132;
+  const std::vector<Element> more = {makeText(0x00080008, "CS", "ORIGINAL\\PRIMARY\\AXIAL")};
+  for (const Syntax syntax : {Syntax::explicitLittle, Syntax::implicitLittle}) {
+    const std::string bytes = makeSlice({.value = 3, .more = more}, syntax);
+    const std::string first = syntax == Syntax::implicitLittle
+                                  ? std::string("\x08\0\x08\0\x16\0\0\0", 8)
+                                  : std::string("\x08\0\x08\0CS", 6);
+    for (const std::size_t begin : {preamble, bytes.find(first)}) {
+      const Path file = folder.write("a", bytes.substr(begin));
+      EXPECT_TRUE(isDicomFile(file));
+      EXPECT_EQ(getScalars(read(folder.path())), std::vector{3.0});
+    }
+  }
+}
+
+TEST(DicomLayout, OtherFilesAreNoDicom) {
+  const TemporaryFolder folder;
+  using namespace std::string_literals;
+  for (const std::string& bytes :
+       {""s, "\x08\0"s, "\x08\0\x08\0\xff\xff\0\0"s, std::string(2000, '\0'),
+        std::string(2000, '\x08'),
+        "\x08\0\x08\0\x02\0\0\0AB\x09\0\x16\0\x02\0\0\0CD"s, // another group
+        "\x08\0\x08\0\x02\0\0\0AB\x08\0\x05\0\x02\0\0\0CD"s, // not in order
+        "\x08\0\x08\0\x02\0\0\0AB"s + std::string(500, '\0')})
+    EXPECT_FALSE(isDicomFile(folder.write("a", bytes))) << bytes.size();
+}
+
 TEST(DicomLayout, TheOnlyStackIsChosenAmongSingleImages) {
   const TemporaryFolder folder;
   writeDepths(folder, {0, 2, 4});

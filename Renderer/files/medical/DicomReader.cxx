@@ -4,6 +4,7 @@
 #include "files/medical/DicomFields.h"
 #include "files/medical/DicomText.h"
 #include "files/medical/SampleStore.h"
+#include "io/MessageText.h"
 
 #include <algorithm>
 #include <array>
@@ -71,6 +72,59 @@ void placeFrames(std::vector<DicomHeader>& frames) {
   }
 }
 
+// ---- the beginning of a file
+
+unsigned getShort(std::string_view bytes, std::size_t at) {
+  const auto getByte = [&](std::size_t i) -> unsigned {
+    return static_cast<unsigned char>(bytes[i]);
+  };
+  return getByte(at) | getByte(at + 1) << 8;
+}
+
+/// Length of a whole element in little endian, its value included; nullopt: implausible.
+std::optional<std::size_t> measureElement(std::string_view bytes) {
+  constexpr std::size_t header = 8, longest = 256;
+  if (bytes.size() < header || getShort(bytes, 2) > 0x0100)
+    return std::nullopt;
+  constexpr std::array<std::string_view, 12> types = {"AE", "CS", "DA", "DT", "IS", "LO",
+                                                      "PN", "SH", "TM", "UI", "UL", "US"};
+  const bool isExplicit = std::ranges::find(types, bytes.substr(4, 2)) != types.end();
+  if (!isExplicit && getShort(bytes, 6) != 0)
+    return std::nullopt;
+  const std::size_t length = getShort(bytes, isExplicit ? 6 : 4);
+  return length % 2 == 0 && length <= longest ? std::optional(header + length) : std::nullopt;
+}
+
+/// True for two elements of the meta information, or of the first group of a data set.
+bool beginsWithElements(std::string_view bytes) {
+  const auto first = measureElement(bytes);
+  if (!first || *first > bytes.size())
+    return false;
+  const std::string_view next = bytes.substr(*first);
+  const unsigned group = getShort(bytes, 0);
+  return (group == 0x0002 || group == 0x0008) && measureElement(next) &&
+         getShort(next, 0) == group && getShort(next, 2) > getShort(bytes, 2);
+}
+
+// ---- transfer syntaxes
+
+/// Throws Error (input) about a transfer syntax that GDCM does not know.
+[[noreturn]] void refuseSyntax(const std::string& source, const std::string& uid) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 6> names = {
+      {{"1.2.840.10008.1.2.4.110", "JPEG XL"},
+       {"1.2.840.10008.1.2.4.111", "JPEG XL"},
+       {"1.2.840.10008.1.2.4.112", "JPEG XL"},
+       {"1.2.840.10008.1.2.4.201", "HTJ2K"},
+       {"1.2.840.10008.1.2.4.202", "HTJ2K"},
+       {"1.2.840.10008.1.2.4.203", "HTJ2K"}}};
+  const auto known = std::ranges::find(names, uid, [](const auto& name) { return name.first; });
+  const std::string shown = sanitize(uid);
+  throw inputError(ErrorCode::unsupportedFile, source, "is compressed as ",
+                   known == names.end() ? concat("transfer syntax ", shown)
+                                        : concat(known->second, " (", shown, ")"),
+                   ", which is not supported; export the series without compression");
+}
+
 // ---- voxels
 
 /// Stored values of voxels of `Word`s; `Stored` has their width and sign.
@@ -130,8 +184,10 @@ bool isDicomFile(const Path& path) {
   if (!std::filesystem::is_regular_file(path, unknown))
     return false; // a pipe would block
   std::ifstream file(path, std::ios::binary);
-  std::array<char, 132> begin{};
-  return file.read(begin.data(), begin.size()) && std::string_view(begin.data() + 128, 4) == "DICM";
+  std::array<char, 1024> begin{};
+  file.read(begin.data(), begin.size());
+  const std::string_view bytes(begin.data(), static_cast<std::size_t>(file.gcount()));
+  return (bytes.size() >= 132 && bytes.substr(128, 4) == "DICM") || beginsWithElements(bytes);
 }
 
 std::vector<double> parseDecimals(std::string text) {
@@ -171,11 +227,14 @@ bool isImage(const DicomHeader& header) {
 
 DicomReader::DicomReader() : m_reader(dicomJob), m_frameReader(dicomFramesJob) {}
 
-std::vector<DicomHeader> parseDicomHeaders(std::string_view reply) {
+std::vector<DicomHeader> parseDicomHeaders(std::string_view reply, const std::string& source) {
   constexpr double maxFrames = 1 << 16;
   ReplyReader fields(reply);
+  if (const std::string syntax = fields.text(); !syntax.empty())
+    refuseSyntax(source, syntax);
   DicomHeader header;
-  for (bool* flag : {&header.isImageObject, &header.isCompressed, &header.isComplete})
+  for (bool* flag :
+       {&header.isImageObject, &header.isCompressed, &header.isComplete, &header.isDirectory})
     *flag = fields.text() == "1";
   for (const DicomField& field : dicomFields)
     takeField(fields, field, header);
@@ -213,9 +272,11 @@ std::vector<DicomHeader> DicomReader::readHeaders(const Path& path) {
     return {};
   try {
     if (reply)
-      return parseDicomHeaders(*reply);
-  } catch (const std::runtime_error&) { // malformed reply
-  }
+      return parseDicomHeaders(*reply, path.string());
+  } catch (const std::runtime_error& error) {
+    if (dynamic_cast<const Error*>(&error))
+      throw;
+  } // malformed reply
   throw inputError(ErrorCode::unreadableFile, concat(path, ": DICOM header"),
                    "cannot be read; export the series again, or remove the file from its folder");
 }

@@ -49,6 +49,7 @@ struct DicomHeader {
   bool isImageObject = false;       ///< the SOP class is an image storage class
   bool isCompressed = false;        ///< the voxels are compressed, or the file is deflated
   bool isComplete = false;          ///< everything before the voxels is readable
+  bool isDirectory = false;         ///< a DICOMDIR
   bool isPlacedByThickness = false; ///< the file states no position of this frame
 };
 
@@ -64,7 +65,8 @@ inline std::uint64_t imageBytes(const DicomHeader& header) {
   return std::uint64_t{header.rows} * header.columns * (header.bits / 8);
 }
 
-/// True for a file with DICOM's preamble and "DICM", whatever its extension.
+/// True for a file with DICOM's preamble and "DICM", or one that begins with two elements of a data
+/// set in little endian, whatever its extension.
 bool isDicomFile(const std::filesystem::path& path);
 
 /// Numbers of a backslash-separated list of decimal strings; empty if one is not a number.
@@ -87,9 +89,9 @@ class DicomReader {
 public:
   DicomReader();
 
-  /// Reads the headers of all frames; empty: unreadable, or not DICOM (no preamble and "DICM").
+  /// Reads the headers of all frames; empty: unreadable, or not DICOM (isDicomFile).
   /// `isComplete` is false for a damaged file. Throws Error (input) if the child crashes or exceeds
-  /// its limits.
+  /// its limits (unreadableFile), or for an unsupported transfer syntax (unsupportedFile).
   std::vector<DicomHeader> readHeaders(const std::filesystem::path& path);
 
   /// Reads the voxels of a frame: rows * columns values of bits / 8 bytes each, little-endian,
@@ -101,8 +103,8 @@ private:
 };
 
 /// Parses the child's reply, which is untrusted: headers of all frames. Throws std::runtime_error
-/// for a malformed reply.
-std::vector<DicomHeader> parseDicomHeaders(std::string_view reply);
+/// for a malformed reply, and Error (input) about `source` for an unsupported transfer syntax.
+std::vector<DicomHeader> parseDicomHeaders(std::string_view reply, const std::string& source);
 
 /// Most bytes of pixels that a file can hold.
 std::uint64_t countPixelBytes(const std::filesystem::path& path, bool isCompressed);

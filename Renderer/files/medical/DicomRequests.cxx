@@ -27,18 +27,35 @@ Tag toTag(std::uint32_t tag) {
 
 // ---- headers
 
-bool isDeflatedFile(const std::string& path) {
+/// Meta information of a file, which need not have it nor the preamble.
+struct FileMeta {
+  gdcm::TransferSyntax::TSType syntax = gdcm::TransferSyntax::TS_END; ///< TS_END: unknown
+  std::string uid;                                                    ///< as the file states it
+};
+
+FileMeta readMeta(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
-  gdcm::Preamble().Read(stream);
+  try {
+    gdcm::Preamble().Read(stream);
+  } catch (const std::exception&) { // there is none
+    stream.clear();
+    stream.seekg(0);
+  }
   gdcm::FileMetaInformation meta;
-  meta.ReadCompat(stream);
-  return meta.GetDataSetTransferSyntax() == gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
+  FileMeta read;
+  try {
+    meta.ReadCompat(stream);
+    read.syntax = meta.GetDataSetTransferSyntax();
+  } catch (const std::exception&) { // the transfer syntax is unknown
+  }
+  read.uid = getText(meta, {0x0002, 0x0010});
+  return read;
 }
 
 /// Reads a data set up to its voxels. Files of one frame are read up to the last field only.
 class HeaderFile {
 public:
-  explicit HeaderFile(const std::string& path) {
+  HeaderFile(const std::string& path, const FileMeta& meta) {
     std::set<Tag> tags;
     for (const DicomField& field : dicomFields) {
       tags.insert(toTag(field.sequence != 0 ? field.sequence : field.tag));
@@ -46,7 +63,8 @@ public:
       if (*field.creator != '\0')
         tags.insert(Tag(toTag(field.tag).GetGroup(), 0x0010));
     }
-    if (isDeflatedFile(path)) { // whose parts GDCM cannot read
+    if (meta.syntax ==
+        gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian) { // whose parts GDCM cannot read
       m_isRead = open(path).Read();
       return;
     }
@@ -120,15 +138,22 @@ void putFrames(const DataSet& data, ReplyWriter& reply) {
 
 std::string makeHeaderReply(const std::string& path) {
   limitMemoryByFile(path);
-  const HeaderFile read(path);
+  const FileMeta meta = readMeta(path);
+  ReplyWriter reply;
+  if (meta.syntax == gdcm::TransferSyntax::TS_END && !meta.uid.empty()) {
+    reply.put(meta.uid);
+    return reply.bytes();
+  }
+  const HeaderFile read(path, meta);
   const gdcm::TransferSyntax& syntax = read.file().GetHeader().GetDataSetTransferSyntax();
   gdcm::MediaStorage kind;
   kind.SetFromFile(read.file());
   const auto flag = [](bool value) { return value ? "1" : "0"; };
-  ReplyWriter reply;
+  reply.put(""); // the transfer syntax is supported
   reply.put(flag(gdcm::MediaStorage::IsImage(kind)));
   reply.put(flag(syntax.IsEncapsulated() || isDeflated(read.file())));
   reply.put(flag(read.isRead()));
+  reply.put(flag(kind == gdcm::MediaStorage::MediaStorageDirectoryStorage));
   for (const DicomField& field : dicomFields)
     reply.put(getFileValue(read.data(), field));
   putFrames(read.data(), reply);

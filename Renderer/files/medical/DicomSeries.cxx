@@ -5,6 +5,7 @@
 #include "io/MessageText.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <tuple>
@@ -62,18 +63,38 @@ public:
     try {
       return m_reader.readHeaders(file);
     } catch (const Error& error) {
-      if (error.message().code != ErrorCode::unreadableFile || m_warnings.size() == mostFailures)
+      if (error.message().code == ErrorCode::unsupportedFile) {
+        m_unsupported = m_unsupportedCount++ == 0 ? error : m_unsupported;
+        return {};
+      }
+      if (error.message().code != ErrorCode::unreadableFile || m_failures.size() == mostFailures)
         throw;
-      m_warnings.push_back(
+      m_failures.push_back(
           makeMessage(ErrorCode::omittedSlices, file, "cannot be read, and is left out"));
       return {};
     }
   }
-  const std::vector<Message>& warnings() const { return m_warnings; }
+
+  std::vector<Message> warnings() const {
+    std::vector<Message> all = m_failures;
+    if (m_unsupported)
+      all.push_back(makeMessage(ErrorCode::omittedSlices, m_unsupported->message().subject,
+                                m_unsupported->message().detail, "; ", m_unsupportedCount,
+                                m_unsupportedCount == 1 ? " such file is" : " such files are",
+                                " left out"));
+    return all;
+  }
+  /// Throws the error about the first file of an unsupported transfer syntax, if there is one.
+  void requireSupported() const {
+    if (m_unsupported)
+      throw Error(*m_unsupported);
+  }
 
 private:
   DicomReader m_reader;
-  std::vector<Message> m_warnings;
+  std::vector<Message> m_failures;
+  std::optional<Error> m_unsupported; ///< the first
+  std::size_t m_unsupportedCount = 0;
 };
 
 /// `subject`: the folder in messages.
@@ -91,8 +112,11 @@ DicomFolder groupFiles(const Paths& files, const std::string& subject) {
       }
   for (auto& [key, slices] : bySeries)
     std::ranges::move(splitSeries(std::move(slices), subject), std::back_inserter(folder.series));
+  if (folder.series.empty())
+    headers.requireSupported();
+  const std::vector<Message> warnings = headers.warnings();
   for (DicomSeries& series : folder.series)
-    std::ranges::copy(headers.warnings(), std::back_inserter(series.warnings));
+    std::ranges::copy(warnings, std::back_inserter(series.warnings));
   const auto isVolume = [](const DicomSeries& series) { return series.isVolume; };
   if (std::ranges::any_of(folder.series, isVolume))
     std::erase_if(folder.series, std::not_fn(isVolume));
@@ -100,6 +124,21 @@ DicomFolder groupFiles(const Paths& files, const std::string& subject) {
     return std::tuple(series.number.size(), series.number, series.uid); // shorter first: numeric
   });
   return folder;
+}
+
+/// An object that is no image of a scan, for a message.
+std::string nameObject(const std::string& modality) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 6> names = {
+      {{"RTDOSE", "an RT Dose"},
+       {"RTPLAN", "an RT Plan"},
+       {"SR", "a structured report"},
+       {"PR", "a presentation state"},
+       {"KO", "a key object selection"},
+       {"REG", "a registration"}}};
+  const auto known =
+      std::ranges::find(names, modality, [](const auto& name) { return name.first; });
+  return known == names.end() ? "a DICOM file without an image"
+                              : concat(known->second, ", not an image of a scan");
 }
 
 std::size_t countSlices(const DicomSeries& series) {
@@ -187,11 +226,14 @@ DicomFolder findSeriesOfFile(const Path& file) {
   const std::vector<DicomHeader> headers = DicomReader().readHeaders(file);
   if (!headers.empty() && isDicomSegmentation(headers.front()))
     throw inputError(ErrorCode::segmentationAsVolume, file, "is a segmentation");
-  if (headers.empty() || (headers.front().isComplete && !isImage(headers.front())))
-    throw inputError(ErrorCode::unsupportedFile, file,
-                     "is a DICOM file without an image; give a "
-                     "volume file or a DICOM series");
   const Path parent = file.has_parent_path() ? file.parent_path() : Path(".");
+  if (!headers.empty() && headers.front().isDirectory)
+    return findDicomSeries(parent);
+  if (headers.empty() || (headers.front().isComplete && !isImage(headers.front())))
+    throw inputError(ErrorCode::unsupportedFile, file, "is ",
+                     headers.empty() ? "a DICOM file without an image"
+                                     : nameObject(headers.front().modality),
+                     "; give a volume file or a DICOM series");
   const bool isAlone = headers.size() > 1;
   const Paths files = isAlone ? Paths{file} : listFolder(parent).files;
   for (const Path& one : files)

@@ -60,13 +60,15 @@ struct DicomFolder {
 
 /// Finds the image series in a folder and in its subfolders, up to 16 levels down; links that lead
 /// back are followed once. Skips files that are not DICOM, and objects without a scan (DICOMDIR,
-/// segmentations, reports, doses); series that cannot be volumes only count if there are no others.
+/// segmentations, reports, doses), and, with a warning, files of unsupported transfer syntaxes
+/// unless there are no others; series that cannot be volumes only count if there are no others.
 /// Registers all files as inputs. Throws Error (input) if there is no series, or more than 200 000
 /// files.
 DicomFolder findDicomSeries(const std::filesystem::path& folder);
 
 /// Finds the series in a folder to which one DICOM file belongs. A multi-frame file is a series of
-/// its own. Adds a warning that other files of the folder are read, too.
+/// its own; a DICOMDIR stands for its folder. Adds a warning that other files of the folder are
+/// read, too.
 DicomFolder findSeriesOfFile(const std::filesystem::path& file);
 
 /// Divides slices of one series into its volumes. `name` is used in messages.
