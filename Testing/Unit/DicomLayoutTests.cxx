@@ -362,6 +362,16 @@ TEST(DicomLayout, AcquisitionsOfOneVolumeStayTogether) {
   }
 }
 
+TEST(DicomLayout, AcquisitionsMayShareTheirEnds) {
+  const TemporaryFolder folder;
+  writePhase(folder, 0, {0, 2, 4, 6}, makePhase(-1, 1, 0));
+  writePhase(folder, 10, {6, 8, 10}, makePhase(-1, 2, 60));
+  const Volume volume = read(folder.path());
+  EXPECT_EQ(getScalars(volume), (std::vector{0.0, 1.0, 2.0, 3.0, 11.0, 12.0}));
+  ASSERT_EQ(volume.warnings.size(), 1u);
+  expectMessage(volume.warnings[0], "omitted-slices | 1 of 7");
+}
+
 TEST(DicomLayout, KernelsAreVolumes) {
   const TemporaryFolder folder;
   writeRepeated(folder, 2, [](int k) {

@@ -72,7 +72,24 @@ double getStatedStep(const DicomHeader& h) {
   return step.size() == 1 && step[0] > 0.0 ? step[0] : 0.0;
 }
 
-bool mayBeOneVolume(const std::vector<DicomSlices>& phases) {
+} // namespace
+
+std::vector<DicomSlices> joinPhases(const std::vector<DicomSlices>& groups) {
+  std::vector<DicomSlices> phases;
+  Ranges ranges;
+  for (const DicomSlices& group : groups) {
+    const std::vector<double> depths = sortDepths(group);
+    if (phases.empty() || !ranges.add(depths)) {
+      phases.emplace_back();
+      ranges = {};
+      ranges.add(depths);
+    }
+    phases.back().insert(phases.back().end(), group.begin(), group.end());
+  }
+  return phases;
+}
+
+bool canBeOneVolume(const std::vector<DicomSlices>& phases) {
   constexpr double densest = 0.75, sparsest = 1.5; // in stated steps
   DicomSlices together;
   for (const DicomSlices& phase : phases)
@@ -85,25 +102,6 @@ bool mayBeOneVolume(const std::vector<DicomSlices>& phases) {
     const Spacing own = measureSpacing(sortDepths(phase));
     return stated > 0.0 ? own.step > sparsest * stated : !own.isEven;
   });
-}
-
-} // namespace
-
-std::vector<DicomSlices> joinPhases(const std::vector<DicomSlices>& groups, bool isCertain) {
-  std::vector<DicomSlices> phases;
-  Ranges ranges;
-  for (const DicomSlices& group : groups) {
-    const std::vector<double> depths = sortDepths(group);
-    if (phases.empty() || !ranges.add(depths)) {
-      phases.emplace_back();
-      ranges = {};
-      ranges.add(depths);
-    }
-    phases.back().insert(phases.back().end(), group.begin(), group.end());
-  }
-  if (phases.size() < 2 || (!isCertain && mayBeOneVolume(phases)))
-    phases.clear();
-  return phases;
 }
 
 } // namespace fenestra

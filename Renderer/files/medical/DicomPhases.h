@@ -6,10 +6,12 @@
 namespace fenestra {
 
 /// Joins groups of slices, in the order of a key, to phases: a group that continues the phase
-/// before it, with an overlap of less than one slice distance, is part of it. Empty: there is only
-/// one phase. Unless `isCertain`, also empty if the slices may well be one volume: phases are
-/// sparser than the slice distance that the file states, as when odd slices are scanned first, or
-/// all slices together have this distance (even spacing, if none is stated).
-std::vector<DicomSlices> joinPhases(const std::vector<DicomSlices>& groups, bool isCertain);
+/// before it, with an overlap of less than one slice distance, is part of it.
+std::vector<DicomSlices> joinPhases(const std::vector<DicomSlices>& groups);
+
+/// True if phases may well be parts of one volume: all slices together have the distance that the
+/// file states, or even spacing if it states none, as when odd slices are scanned first; or phases
+/// are sparser than that.
+bool canBeOneVolume(const std::vector<DicomSlices>& phases);
 
 } // namespace fenestra

@@ -2,18 +2,20 @@
 //
 // Left out, with a warning that counts them: localizers; slices that cannot be placed, or whose
 // size, orientation or spacing is not that of most slices; copies of another slice (equal instance
-// uid and position, or equal position and voxels). What remains is one volume unless several slices
-// share a position. Then the series is divided by the echo time, b-value, image type and
-// convolution kernel, as far as each divides it into nearly complete volumes; and each volume into
-// frames by the temporal position, cardiac phase, trigger time, acquisition or its time, else in
-// the order of the instance numbers if all positions have equally many slices. Temporal positions
-// and acquisitions are frames also if their positions interleave (DicomPhases.h).
+// uid and position, or equal position and voxels; where an acquisition continues another, a slice
+// at the same position). What remains is one volume unless several slices share a position. Then
+// the series is divided by the echo time, b-value, image type and convolution kernel, as far as
+// each divides it into nearly complete volumes; and each volume into frames by the temporal
+// position, cardiac phase, trigger time, acquisition or its time, else in the order of the instance
+// numbers if all positions have equally many slices. Temporal positions and acquisitions are frames
+// also if their positions interleave (DicomPhases.h).
 
 #include "base/Distribution.h"
 #include "base/Error.h"
 #include "files/medical/DicomPhases.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 #include <tuple>
@@ -202,9 +204,10 @@ std::vector<std::pair<std::string, DicomSlices>> divide(DicomSlices slices, GetK
   return parts;
 }
 
-/// Divides slices into phases whose positions interleave; those of less than half of the largest
-/// are left out and counted. Else returns all together.
-Groups divideInterleaved(DicomSlices slices, const TimeKey& key, std::size_t& leftOut) {
+/// Divides by a time if several slices share a position, or if phases interleave; those of less
+/// than half of the largest are left out and counted. Else returns all together, as acquisitions
+/// that continue each other.
+Groups divideByKey(DicomSlices slices, const TimeKey& key, std::size_t& leftOut) {
   std::map<KeyValue, DicomSlices> byValue;
   if (key.interleaving != Interleaving::never)
     for (const DicomSlice& slice : slices)
@@ -212,12 +215,23 @@ Groups divideInterleaved(DicomSlices slices, const TimeKey& key, std::size_t& le
   Groups groups;
   for (auto& [value, group] : byValue)
     groups.push_back(std::move(group));
-  if (groups.size() < 2)
+  const auto findMost = [](const Groups& all) {
+    return std::ranges::max_element(all, {}, &DicomSlices::size)->size();
+  };
+  Groups phases = joinPhases(groups);
+  constexpr std::size_t fewest = 3; // slices; single ones do not show what they continue
+  if (phases.size() == 1 && findMost(groups) >= fewest)
     return {std::move(slices)};
-  Groups phases = joinPhases(groups, key.interleaving == Interleaving::certain);
-  if (phases.empty())
-    return {std::move(slices)};
-  const std::size_t most = std::ranges::max_element(phases, {}, &DicomSlices::size)->size();
+  auto parts = divide(std::move(slices), key.get, leftOut);
+  const bool interleaves =
+      phases.size() > 1 && (key.interleaving == Interleaving::certain || !canBeOneVolume(phases));
+  if (parts.size() > 1 || !interleaves) {
+    phases.clear();
+    for (auto& [text, part] : parts)
+      phases.push_back(std::move(part));
+    return phases;
+  }
+  const std::size_t most = findMost(phases);
   std::erase_if(phases, [&](const DicomSlices& phase) {
     const bool isSmall = 2 * phase.size() < most;
     leftOut += isSmall ? phase.size() : 0;
@@ -264,33 +278,50 @@ std::size_t removeEqualVoxels(DicomSlices& slices) {
   return leaveOut(slices, [&](const DicomSlice&) { return copies.contains(i++); });
 }
 
-/// Frames over time of one volume. Sets how many slices are left out as copies.
-Groups divideByTime(DicomSlices slices, std::size_t& leftOut, std::size_t& copies) {
+/// Where an acquisition begins at the last position of an earlier one, keeps the slice of the
+/// earlier one. Returns the number of the others.
+std::size_t removeSharedEnds(DicomSlices& slices) {
+  const auto getAcquisition = [&](std::size_t i) { return slices[i].header.acquisition; };
+  std::set<std::optional<double>> acquisitions;
+  for (const DicomSlice& slice : slices)
+    acquisitions.insert(slice.header.acquisition);
+  const Stations stations(slices);
+  std::set<std::size_t> later;
+  for (std::vector<std::size_t> station : stations.indices()) {
+    std::ranges::sort(station, {}, getAcquisition);
+    if (std::ranges::adjacent_find(station, std::equal_to(), getAcquisition) != station.end())
+      return 0;
+    later.insert(station.begin() + 1, station.end());
+  }
+  if (later.size() >= acquisitions.size())
+    return 0;
+  std::size_t i = 0;
+  return leaveOut(slices, [&](const DicomSlice&) { return later.contains(i++); });
+}
+
+struct LeftOut {
+  std::size_t localizers = 0, unplaced = 0, geometry = 0, copies = 0, incomplete = 0,
+              sharedEnds = 0;
+};
+
+/// Frames over time of one volume.
+Groups divideByTime(DicomSlices slices, LeftOut& out) {
   Groups frames = {std::move(slices)};
   for (const TimeKey& key : timeKeys) {
     Groups divided;
-    for (DicomSlices& frame : frames) {
-      auto parts = divide(std::move(frame), key.get, leftOut);
-      if (parts.size() > 1)
-        for (auto& [text, part] : parts)
-          divided.push_back(std::move(part));
-      else
-        std::ranges::move(divideInterleaved(std::move(parts.front().second), key, leftOut),
-                          std::back_inserter(divided));
-    }
+    for (DicomSlices& frame : frames)
+      std::ranges::move(divideByKey(std::move(frame), key, out.incomplete),
+                        std::back_inserter(divided));
     frames = std::move(divided);
   }
   Groups all;
   for (DicomSlices& frame : frames) {
-    copies += removeEqualVoxels(frame);
+    out.copies += removeEqualVoxels(frame);
+    out.sharedEnds += removeSharedEnds(frame);
     std::ranges::move(divideByInstance(std::move(frame)), std::back_inserter(all));
   }
   return all;
 }
-
-struct LeftOut {
-  std::size_t localizers = 0, unplaced = 0, geometry = 0, copies = 0, incomplete = 0;
-};
 
 void addWarnings(const LeftOut& out, const std::string& name, std::size_t all,
                  std::vector<Message>& warnings) {
@@ -304,6 +335,7 @@ void addWarnings(const LeftOut& out, const std::string& name, std::size_t all,
   warn(out.unplaced, "no gray images, or without a position");
   warn(out.geometry, "their size, spacing or orientation is not that of most slices");
   warn(out.copies, "copies of other slices");
+  warn(out.sharedEnds, "at the position of a slice of an earlier acquisition");
   warn(out.incomplete, "they are less than half of a volume");
 }
 
@@ -346,7 +378,7 @@ std::vector<DicomSeries> splitSeries(DicomSlices slices, const std::string& name
   for (auto& [text, part] : parts) {
     DicomSeries& volume = volumes.emplace_back(series);
     volume.part = text;
-    volume.frames = divideByTime(std::move(part), out.incomplete, out.copies);
+    volume.frames = divideByTime(std::move(part), out);
   }
   for (DicomSeries& volume : volumes)
     addWarnings(out, name, all, volume.warnings);
