@@ -1,6 +1,7 @@
 #pragma once
-// Reads files in a sandboxed child process, for libraries that crash on damaged files: GDCM and
-// HDF5. NRRD and NIfTI are read in this process, which avoids copying volumes through a socket.
+// Reads files in a sandboxed child process, for libraries that crash on damaged files: GDCM, HDF5,
+// libpng and libtiff. NRRD and NIfTI are read in this process, which avoids copying volumes through
+// a socket.
 //
 // The child runs the parent's executable (/proc/self/exe: the same build even if the file has been
 // replaced; the program's file if a loader was started with it). It inherits no memory, files,

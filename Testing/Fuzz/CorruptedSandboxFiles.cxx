@@ -1,10 +1,11 @@
-// Reads corrupted DICOM files, images and segmentations, and transform files in the sandbox. Each
-// must be read, or fail with an input Error of one line that names the file. usage:
+// Reads corrupted DICOM files, images and segmentations, transform files and image slices in the
+// sandbox. Each must be read, or fail with an input Error of one line that names the file. usage:
 // CorruptedSandboxFiles COUNT [SEED]
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
 #include "files/medical/DicomSeries.h"
+#include "files/medical/SliceFile.h"
 #include "files/segments/DicomSegments.h"
 #include "files/slicer/TransformFile.h"
 #include "io/Sandbox.h"
@@ -91,6 +92,16 @@ void classify(Counts& counts, const Path& path, const Read& read) {
   std::printf("%s\n", problem.c_str());
 }
 
+void readPages(const Path& path) {
+  SliceReader reader;
+  bool isLast = false;
+  for (std::uint32_t page = 0; !isLast; ++page) {
+    const SliceHeader header = reader.readHeader(path, page);
+    reader.readSamples(path, page, header);
+    isLast = header.isLast;
+  }
+}
+
 int runAll(int total, Random random) {
   const TemporaryFolder folder;
   struct Kind {
@@ -102,7 +113,8 @@ int runAll(int total, Random random) {
                         {loadSeeds(FENESTRA_SANDBOX_FILES "/Segments"),
                          [](const Path& path) { readDicomSegments(path, nullptr); }},
                         {loadSeeds(FENESTRA_SANDBOX_FILES "/Transform"),
-                         [](const Path& path) { readLinearTransform(path).inverse(); }}};
+                         [](const Path& path) { readLinearTransform(path).inverse(); }},
+                        {loadSeeds(FENESTRA_SANDBOX_FILES "/Image"), readPages}};
   Counts counts;
   for (int i = 0; i < total; ++i) {
     const auto& [seeds, read] = kinds[static_cast<std::size_t>(i) % std::size(kinds)];

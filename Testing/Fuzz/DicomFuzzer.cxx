@@ -9,10 +9,10 @@
 namespace {
 
 /// Evens the spacing of slices and converts PET, as readDicomVolume does before it reads voxels.
-void place(fenestra::DicomSlices& slices) {
+void place(fenestra::DicomSlices& slices, const fenestra::DicomSeries& series) {
   using namespace fenestra;
   std::vector<Message> warnings;
-  convertToSuv(slices, "series", warnings);
+  convertToSuv(slices, series, "series", warnings);
   std::vector<PlacedSlice> placed;
   for (const DicomSlice& slice : slices)
     if (slice.header.position.size() == 3 && slice.header.pixelSpacing.size() == 2)
@@ -45,9 +45,9 @@ FENESTRA_FUZZ(Dicom, input) {
     header.isCompressed = false;
     slices.push_back({empty, header});
   }
-  for (DicomSeries& series : splitSeries(std::move(slices), "series"))
-    for (DicomSlices& frame : series.frames)
-      place(frame);
+  for (const DicomSeries& series : splitSeries(std::move(slices), "series"))
+    for (DicomSlices frame : series.frames)
+      place(frame, series);
   checkDicomPixels(path, headers.front());
   rescaleVoxels(headers.front(), std::string(imageBytes(headers.front()), '\x5a'));
 }

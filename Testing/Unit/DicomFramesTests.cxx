@@ -234,7 +234,7 @@ TEST(StandardUptake, TheFirstAcquisitionIsSearchedInAllSlices) {
   DicomSlices slices = series.frames[0];
   convertToSuv(slices, series, "x", warnings);
   EXPECT_NEAR(slices[0].header.slope, 70e3 / 3.5e8, 1e-12);
-  EXPECT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(warnings.empty());
 }
 
 TEST(StandardUptake, VoxelsOfAPetAreSuv) {

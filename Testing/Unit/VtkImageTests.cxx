@@ -263,14 +263,21 @@ TEST(VtkImage, SpacingFormAndFrameAreRefused) {
 
 TEST(VtkImage, TruncatedFilesAreRefused) {
   const TemporaryFolder folder;
+  const auto expectDamaged = [&](const std::string& text) {
+    const auto path = folder.write("cut.vti", text);
+    expectRefused(path, "damaged-file", [&] { readVolume(path); });
+  };
   for (const Encoding& encoding : listEncodings()) {
     const std::string whole = VtiFile{encoding}.encode();
-    const std::size_t data = whole.find(encoding.format == "appended" ? "_ab" : "offset=\"2\">");
-    for (const std::size_t end :
-         {std::size_t(0), whole.size() / 4, data + 2, data + 20, data + 40}) {
-      const auto path = folder.write("cut.vti", whole.substr(0, end));
-      expectRefused(path, "damaged-file", [&] { readVolume(path); });
-    }
+    const bool isAppended = encoding.format == "appended";
+    const std::size_t data = whole.find(isAppended ? "_ab" : "offset=\"2\">");
+    const std::size_t dataEnd = whole.rfind(isAppended ? "\n</AppendedData>" : "\n</DataArray>");
+    for (const std::size_t end : {std::size_t(0), whole.size() / 4, data + 2, data + 20, data + 40})
+      expectDamaged(whole.substr(0, end));
+    if (isAppended)
+      expectDamaged(whole.substr(0, dataEnd - 2)); // shorter by less than the array's header
+    else if (encoding.format == "binary")
+      expectDamaged(whole.substr(0, dataEnd - 4) + whole.substr(dataEnd)); // complete elements
   }
 }
 
