@@ -16,12 +16,12 @@ constexpr double leastVolume = 150e3;   // mm^3
 constexpr double closing = 6.0;         // mm
 
 /// Cells of about 1.5 mm with the mean of their voxels.
-struct Cells {
+struct Averages {
   Grid grid;
   std::vector<float> values;
 };
 
-Cells averageCells(const Volume& ct) {
+Averages average(const Volume& ct) {
   constexpr double edge = 1.5; // mm
   const Vec3 spacing = ct.grid.spacing();
   Size3 factor, size;
@@ -32,9 +32,9 @@ Cells averageCells(const Volume& ct) {
   }
   const Vec3 scale = factor.cast<double>();
   const Affine toVoxels(Mat3::Diagonal(scale), (scale.array() - 1.0) * 0.5);
-  Cells cells{{size, ct.grid.indexToWorld * toVoxels},
-              std::vector<float>(static_cast<std::size_t>(size.prod()))};
-  const auto average = [&](const auto& voxels) {
+  Averages cells{{size, ct.grid.indexToWorld * toVoxels},
+                 std::vector<float>(static_cast<std::size_t>(size.prod()))};
+  const auto fill = [&](const auto& voxels) {
     forEachRow(size, [&](std::int64_t y, std::int64_t z, std::size_t to) {
       for (std::int64_t x = 0; x < size.x(); ++x) {
         double sum = 0.0;
@@ -49,14 +49,14 @@ Cells averageCells(const Volume& ct) {
       }
     });
   };
-  std::visit(average, ct.voxels);
+  std::visit(fill, ct.voxels);
   return cells;
 }
 
 /// Air in cells, taken away by connected parts.
 class Air {
 public:
-  explicit Air(const Cells& cells) : m_cells(cells), m_isAir(cells.values.size()) {
+  explicit Air(const Averages& cells) : m_cells(cells), m_isAir(cells.values.size()) {
     std::ranges::transform(cells.values, m_isAir.begin(),
                            [](float value) { return std::uint8_t{value < highestAir}; });
   }
@@ -112,12 +112,12 @@ private:
     return part;
   }
 
-  const Cells& m_cells;
+  const Averages& m_cells;
   Marks m_isAir;
 };
 
 /// Fills gaps up to twice `closing` wide.
-void close(const Grid& grid, Marks& marks) {
+void fillGaps(const Grid& grid, Marks& marks) {
   const auto farther = [&](double limit) {
     const std::vector<float> distances = computeDistances(marks, grid, limit + 1.0);
     Marks far(marks.size());
@@ -133,7 +133,7 @@ void close(const Grid& grid, Marks& marks) {
 } // namespace
 
 std::optional<Lungs> findLungs(const Volume& ct) {
-  const Cells cells = averageCells(ct);
+  const Averages cells = average(ct);
   const double cellVolume = std::abs(cells.grid.indexToWorld.linear().determinant());
   Lungs lungs{cells.grid, Marks(cells.values.size())};
   Air air(cells);
@@ -151,7 +151,7 @@ std::optional<Lungs> findLungs(const Volume& ct) {
   }
   if (std::ranges::find(lungs.marks, 1) == lungs.marks.end())
     return std::nullopt;
-  close(lungs.grid, lungs.marks);
+  fillGaps(lungs.grid, lungs.marks);
   lungs.volume = static_cast<double>(std::ranges::count(lungs.marks, 1)) * cellVolume;
   return lungs;
 }
