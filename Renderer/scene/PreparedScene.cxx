@@ -53,9 +53,8 @@ PreparedScene PreparedScene::withRequest(const RenderRequest& request) const {
   return scene;
 }
 
-void PreparedScene::prepare() {
+void PreparedScene::readInput() {
   const RenderRequest& r = m_request;
-  std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
   m_namedLights.get(r.lightsName(), r.environment, r.environmentMap); // fails early
   if (r.transfer)
     m_namedTransfer.get(*r.transfer, m_input);
@@ -64,8 +63,7 @@ void PreparedScene::prepare() {
     refuseAssumptions(read->volume.warnings);
   if (needsLungs(r) && m_lungs.get(read)->input)
     m_request.focus = {lungSegment};
-  const auto lights = m_namedLights.get(r.lightsName(), r.environment, r.environmentMap);
-  const auto settings = m_settings.get(m_input, r.volume.name, r.view.isSceneCamera());
+  m_settings.get(m_input, r.volume.name, r.view.isSceneCamera());
   if (!allSegments() && (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty()))
     m_segments.get(m_input, chooseSegmentation(), read->volume.grid);
   if (r.isStrict && allSegments())
@@ -76,6 +74,14 @@ void PreparedScene::prepare() {
     m_withoutTable.get(read, m_table.result(), allSegments(),
                        allSegments() ? m_hasVoxels.get(allSegments())
                                      : Handle<std::vector<bool>>());
+}
+
+void PreparedScene::prepare() {
+  const RenderRequest& r = m_request;
+  std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
+  readInput();
+  const auto lights = m_namedLights.get(r.lightsName(), r.environment, r.environmentMap);
+  const auto settings = m_settings.result();
   const VolumeHandle raw = rawVolume();
   if (r.focusStyle.hasOrganMargin && !r.focus.empty() &&
       isPlausibleModality(Modality::ct, raw->volume))

@@ -91,6 +91,9 @@ public:
 private:
   /// Computes all stages that m_request needs, in order.
   void prepare();
+  /// The first of them: volume, settings and segments of the input, and lights. Adds found lungs to
+  /// the request as its focus.
+  void readInput();
   /// Name of the materials to use; `segments`: null without labels.
   std::string resolveMaterials(const Handle<SegmentsInput>& segments) const;
   void makeTint(const std::string& name);

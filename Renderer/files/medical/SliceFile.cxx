@@ -66,7 +66,7 @@ SliceHeader parseHeader(const Path& path, const std::string& reply) {
   return header;
 }
 
-Error makeDamagedError(const Path& path) {
+Error makeDamagedSliceError(const Path& path) {
   return inputError(ErrorCode::damagedFile, path,
                     "is damaged, truncated or does not match its extension; save it again");
 }
@@ -95,14 +95,14 @@ SliceHeader SliceReader::readHeader(const Path& path, std::uint32_t page) {
     throw;
   } catch (const std::runtime_error&) { // malformed reply
   }
-  throw makeDamagedError(path);
+  throw makeDamagedSliceError(path);
 }
 
 std::string SliceReader::readSamples(const Path& path, std::uint32_t page,
                                      const SliceHeader& header) {
   auto reply = m_reader.request(makeRequest(sliceSamplesRequest, page, path), header.bytes());
   if (!reply || reply->size() != header.bytes())
-    throw makeDamagedError(path);
+    throw makeDamagedSliceError(path);
   return *std::move(reply);
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-Error makeDamagedError(const Path& path) {
+Error makeDamagedVtkError(const Path& path) {
   return inputError(ErrorCode::damagedFile, path,
                     "is damaged, truncated or no VTK image; write it again");
 }
@@ -45,7 +45,7 @@ std::size_t readText(const Path& path, std::ifstream& file, std::string& text) {
     file.read(&text[before], chunk);
     text.resize(before + static_cast<std::size_t>(file.gcount()));
     if (before == 0 && text.find("<VTKFile") == std::string::npos)
-      throw makeDamagedError(path);
+      throw makeDamagedVtkError(path);
     const std::size_t overlap = std::min(before, appendedTag.size());
     if (const auto found = text.find(appendedTag, before - overlap); found != std::string::npos)
       return found;
@@ -64,12 +64,12 @@ std::shared_ptr<ImageDocument> readDocument(const Path& path) {
     text.append(more, 0, static_cast<std::size_t>(file.gcount()));
     const std::size_t close = text.find('>', element), begin = text.find('_', close);
     if (close == std::string::npos || begin == std::string::npos)
-      throw makeDamagedError(path);
+      throw makeDamagedVtkError(path);
     document->appended = begin + 1;
     text.replace(close, std::string::npos, "/></VTKFile>");
   }
   if (!document->xml.load_buffer_inplace(text.data(), text.size()))
-    throw makeDamagedError(path);
+    throw makeDamagedVtkError(path);
   return document;
 }
 
@@ -215,7 +215,7 @@ VtkBytes openAppendedBytes(const Path& path, const ImageDocument& document,
   const auto offset = parseNumber<std::uint64_t>(array.attribute("offset").value());
   const std::uint64_t fileBytes = std::filesystem::file_size(path);
   if (document.appended == 0 || !offset || *offset > fileBytes - document.appended)
-    throw makeDamagedError(path);
+    throw makeDamagedVtkError(path);
   const std::string_view encoding =
       document.xml.child("VTKFile").child("AppendedData").attribute("encoding").value();
   const auto file = std::make_shared<std::ifstream>(path, std::ios::binary);
@@ -252,7 +252,7 @@ SampleSource openSamples(const Path& path, const std::shared_ptr<ImageDocument>&
     return source;
   }
   if (format != "binary" && format != "appended")
-    throw makeDamagedError(path);
+    throw makeDamagedVtkError(path);
   const auto bytes = std::make_shared<VtkArrayReader>(
       format == "binary" ? openInlineBytes(array) : openAppendedBytes(path, *document, array),
       encoding);
@@ -270,7 +270,7 @@ VtkImage openVtkImage(const Path& path, const std::optional<Vec3>& spacing) {
   const std::shared_ptr<ImageDocument> document = readDocument(path);
   const pugi::xml_node root = document->xml.child("VTKFile"), data = root.child("ImageData");
   if (!data)
-    throw makeDamagedError(path);
+    throw makeDamagedVtkError(path);
   const auto encoding = findVtkEncoding(root);
   if (!encoding)
     throw inputError(ErrorCode::unsupportedFile, path,
