@@ -10,10 +10,10 @@
 namespace fenestra {
 
 /// Reads NRRD (.nrrd .nhdr), NIfTI or Analyze (.nii .nii.gz, .hdr with .img), FreeSurfer (.mgz
-/// .mgh), MetaImage (.mha .mhd) or VTK XML images (.vti) with any scalar type and geometry. Of several frames (a fourth
-/// axis, or a NRRD list), one is read. Throws Error (input) for several components, missing,
-/// damaged or truncated files, singular geometry, a volume without a finite voxel, and other
-/// formats.
+/// .mgh), MetaImage (.mha .mhd) or VTK XML images (.vti) with any scalar type and geometry. Of
+/// several frames (a fourth axis, or a NRRD list), one is read. Throws Error (input) for several
+/// components, missing, damaged or truncated files, singular geometry, a volume without a finite
+/// voxel, and other formats.
 Volume readVolume(const std::filesystem::path& path, const VolumeChoice& choice = {});
 
 /// Store that chooses among Volume.h's voxel types.
