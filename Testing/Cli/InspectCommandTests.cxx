@@ -80,7 +80,7 @@ TEST_F(InspectCommand, ListsSegmentationGivenBesideVolume) {
 
 TEST_F(InspectCommand, ExampleForAFolderOfMasksRuns) {
   std::filesystem::create_directory(folder / "two masks");
-  for (const auto& [name, voxels] : {std::pair("heart", 0), {"left lung", 8}})
+  for (const auto& [name, voxels] : {std::pair("heart", 0U), {"left lung", 8U}})
     folder.write(std::string("two masks/") + name + ".nrrd",
                  NrrdText{"4 4 4", "uint8"}.encode(std::string(64 - voxels, '\0') +
                                                    std::string(voxels, '\1')));
