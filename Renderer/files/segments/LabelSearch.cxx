@@ -20,8 +20,9 @@ struct SiblingTable {
 std::vector<SiblingTable> findSiblingTables(const std::filesystem::path& path) {
   std::vector<SiblingTable> tables;
   const std::filesystem::path stem = stripExtensions(path);
-  for (const char* ending : {".ctbl", ".label", ".json", ".csv", ".tsv", "_ColorTable.ctbl"})
-    tables.push_back({stem.string() + ending, false}); // the last one by Slicer's export
+  for (const char* extension : {".ctbl", ".label", ".json", ".csv", ".tsv"})
+    tables.push_back({stem.string() + extension, false});
+  tables.push_back({concat(stem.string(), '_', "ColorTable.ctbl"), false}); // by Slicer's export
   tables.push_back({path.parent_path() / "seg_labels.json", true});
   std::erase_if(tables, [](const SiblingTable& table) { return !fileExists(table.file); });
   return tables;
