@@ -54,7 +54,7 @@ std::size_t readText(const Path& path, std::ifstream& file, std::string& text) {
 }
 
 std::shared_ptr<ImageDocument> readDocument(const Path& path) {
-  const auto document = std::make_shared<ImageDocument>();
+  auto document = std::make_shared<ImageDocument>();
   std::ifstream file(path, std::ios::binary);
   std::string& text = document->text;
   if (const std::size_t element = readText(path, file, text); element != std::string::npos) {
