@@ -51,8 +51,8 @@ std::vector<SegmentInfo> selectFocus(const OptionValues& given,
   const std::vector<std::string> focus = given.list("focus");
   std::vector<SegmentInfo> selected;
   std::ranges::copy_if(segments, std::back_inserter(selected), [&](const SegmentInfo& segment) {
-    const std::string names[] = {segment.id, segment.name, std::to_string(segment.labelValue)};
-    return std::ranges::find_first_of(focus, names) != focus.end();
+    return std::ranges::any_of(
+        focus, [&](const std::string& selector) { return isSelected(segment, selector); });
   });
   return selected.empty() ? segments : selected;
 }

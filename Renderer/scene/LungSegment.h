@@ -16,7 +16,7 @@ struct FoundLungs {
   std::vector<Message> warnings = {}; ///< if none were found
 };
 
-/// True if the request shows lungs, but names no segment that hides what is before them.
+/// True if the request shows the inside of lungs, but has no focus for which the body is clipped.
 bool needsLungs(const RenderRequest& request);
 
 FoundLungs findLungSegment(const VolumeHandle& volume);

@@ -55,7 +55,8 @@ PreparedScene PreparedScene::withRequest(const RenderRequest& request) const {
 
 void PreparedScene::readInput() {
   const RenderRequest& r = m_request;
-  m_namedLights.get(r.lightsName(), r.environment, r.environmentMap); // fails early
+  if (!needsLungs(r)) // which may change the default lights
+    m_namedLights.get(r.lightsName(), r.environment, r.environmentMap); // fails early
   if (r.transfer)
     m_namedTransfer.get(*r.transfer, m_input);
   const auto read = m_volume.get(m_input, *m_volumeChoice.get(m_input, r.volume, r.segmentation));

@@ -273,10 +273,10 @@ std::vector<DicomHeader> DicomReader::readHeaders(const Path& path) {
   try {
     if (reply)
       return parseDicomHeaders(*reply, path.string());
-  } catch (const std::runtime_error& error) {
-    if (dynamic_cast<const Error*>(&error))
-      throw;
-  } // malformed reply
+  } catch (const Error&) {
+    throw;
+  } catch (const std::runtime_error&) { // malformed reply
+  }
   throw inputError(ErrorCode::unreadableFile, concat(path, ": DICOM header"),
                    "cannot be read; export the series again, or remove the file from its folder");
 }

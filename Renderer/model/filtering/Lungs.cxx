@@ -16,12 +16,12 @@ constexpr double leastVolume = 150e3;   // mm^3
 constexpr double closing = 6.0;         // mm
 
 /// Cells of about 1.5 mm with the mean of their voxels.
-struct Averages {
+struct CoarseVolume {
   Grid grid;
   std::vector<float> values;
 };
 
-Averages average(const Volume& ct) {
+CoarseVolume average(const Volume& ct) {
   constexpr double edge = 1.5; // mm
   const Vec3 spacing = ct.grid.spacing();
   Size3 factor, size;
@@ -32,8 +32,8 @@ Averages average(const Volume& ct) {
   }
   const Vec3 scale = factor.cast<double>();
   const Affine toVoxels(Mat3::Diagonal(scale), (scale.array() - 1.0) * 0.5);
-  Averages cells{{size, ct.grid.indexToWorld * toVoxels},
-                 std::vector<float>(static_cast<std::size_t>(size.prod()))};
+  CoarseVolume cells{{size, ct.grid.indexToWorld * toVoxels},
+                     std::vector<float>(static_cast<std::size_t>(size.prod()))};
   const auto fill = [&](const auto& voxels) {
     forEachRow(size, [&](std::int64_t y, std::int64_t z, std::size_t to) {
       for (std::int64_t x = 0; x < size.x(); ++x) {
@@ -56,7 +56,7 @@ Averages average(const Volume& ct) {
 /// Air in cells, taken away by connected parts.
 class Air {
 public:
-  explicit Air(const Averages& cells) : m_cells(cells), m_isAir(cells.values.size()) {
+  explicit Air(const CoarseVolume& cells) : m_cells(cells), m_isAir(cells.values.size()) {
     std::ranges::transform(cells.values, m_isAir.begin(),
                            [](float value) { return std::uint8_t{value < highestAir}; });
   }
@@ -112,7 +112,7 @@ private:
     return part;
   }
 
-  const Averages& m_cells;
+  const CoarseVolume& m_cells;
   Marks m_isAir;
 };
 
@@ -133,7 +133,7 @@ void fillGaps(const Grid& grid, Marks& marks) {
 } // namespace
 
 std::optional<Lungs> findLungs(const Volume& ct) {
-  const Averages cells = average(ct);
+  const CoarseVolume cells = average(ct);
   const double cellVolume = std::abs(cells.grid.indexToWorld.linear().determinant());
   Lungs lungs{cells.grid, Marks(cells.values.size())};
   Air air(cells);
