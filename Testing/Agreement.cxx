@@ -8,7 +8,7 @@
 #include <initializer_list>
 #include <limits>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Means and standard errors of an image.
@@ -146,4 +146,4 @@ double computeAgreement(const Image& a, const Image& b) {
   return count == 0.0 ? 1.0 : -std::expm1(count * std::log1p(-minP)); // 1 - (1 - p)^count
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

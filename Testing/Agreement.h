@@ -3,7 +3,7 @@
 
 #include "image/Image.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Means of R, G and B over square tiles of `size` pixels, with standard errors, and the sum of
 /// samples.N if present. Tiles at the right and lower border may be smaller; a large `size` gives
@@ -22,4 +22,4 @@ double computeAgreement(const Image& a, const Image& b);
 /// P(|T| >= |t|) for Student's t with `dof` degrees of freedom, which may be any real number > 0.
 double studentTail(double t, double dof);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "base/Vector.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 template <template <typename, int> class Kind, typename T, int N>
 bool allFinite(const Tuple<Kind, T, N>& v) {
@@ -43,4 +43,4 @@ inline bool isApprox(const Affine& a, const Affine& b, double relative = 1e-12) 
   return frobeniusNorm(difference) <= relative * std::min(frobeniusNorm(a), frobeniusNorm(b));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 
 #include "model/medium/VolumeProperty.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 template <typename Value>
 Value interpolateCurve(const std::vector<CurveNode<Value>>& nodes, double x) {
@@ -17,4 +17,4 @@ Value interpolateCurve(const std::vector<CurveNode<Value>>& nodes, double x) {
          (next->value - before.value) * evaluateCurve(u, before.midpoint, before.sharpness);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Selects the instruction set with this index, best first; skips if the machine has fewer.
 class InstructionSetTest : public ::testing::TestWithParam<std::size_t> {
@@ -21,4 +21,4 @@ protected:
 
 inline const auto allInstructionSets = ::testing::Range<std::size_t>(0, 4);
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -8,7 +8,7 @@
 
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Expects one line with the properties that `expected` lists:
 ///
@@ -53,4 +53,4 @@ Error catchError(ErrorKind kind, const std::string& expected, Action&& action) {
   return {kind, {}};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 struct SphereBins {
   static constexpr int rows = 12;    ///< equal in cos(theta)
@@ -94,4 +94,4 @@ void expectSamplingMatchesPdf(Sample&& sample, Pdf&& pdf, double mass = 1.0, int
   EXPECT_LT(chiSquaredZScore(observed, expected), 4.5);
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -17,7 +17,7 @@ using Application = QCoreApplication;
 
 int main(int argc, char** argv) {
 #ifdef FENESTRA_TEST_SANDBOX
-  fenestra::serveSandbox(argc, argv); // this executable is also the sandboxed reader process
+  fenestra::core::serveSandbox(argc, argv); // this executable is also the sandboxed reader process
 #endif
   ::testing::InitGoogleTest(&argc, argv);
 #ifdef FENESTRA_TEST_WIDGETS

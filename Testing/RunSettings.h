@@ -15,7 +15,7 @@
 #include <optional>
 #include <string>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 inline bool isLongRun() {
   static const bool isLong = std::getenv("FENESTRA_LONG") != nullptr;
@@ -65,4 +65,4 @@ inline std::uint64_t shiftSeed(std::uint64_t seed) {
   return seed + 1000003 * (seedBase() - 1);
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra::testing_clipping {
+namespace fenestra::core::testing_clipping {
 
 /// Saddle-point system in mm, [K + lambda I, P; P', 0] [w; a] = [z; 0] with lambda = (1 - p) / p.
 /// Solved in Scalar by Gaussian elimination with partial pivoting: a library's solver takes a
@@ -82,4 +82,4 @@ private:
   Row m_solution;
 };
 
-} // namespace fenestra::testing_clipping
+} // namespace fenestra::core::testing_clipping

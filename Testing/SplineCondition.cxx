@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-namespace fenestra::testing_clipping {
+namespace fenestra::core::testing_clipping {
 
 using Solver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
@@ -52,4 +52,4 @@ double computeConditionByEigenvectors(const std::vector<Vec2>& sites, double lam
   return spectrum.eigenvalues()[n - 4] / spectrum.eigenvalues()[0];
 }
 
-} // namespace fenestra::testing_clipping
+} // namespace fenestra::core::testing_clipping

@@ -3,7 +3,7 @@
 
 #include "clip/surface/ThinPlateSpline.h"
 
-namespace fenestra::testing_clipping {
+namespace fenestra::core::testing_clipping {
 
 /// 2-norm condition number of K' + lambda / s^2 I on the null space of P'; 1 without kernel terms.
 double computeConditionNumber(const ThinPlateSpline& spline);
@@ -12,4 +12,4 @@ double computeConditionNumber(const ThinPlateSpline& spline);
 /// null space. Sites in the xy plane, mm.
 double computeConditionByEigenvectors(const std::vector<Vec2>& sites, double lambda);
 
-} // namespace fenestra::testing_clipping
+} // namespace fenestra::core::testing_clipping

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Selects FENESTRA_INSTRUCTIONS at the start of any program that includes this header, as
 /// `fenestra` does. The program ends if the machine lacks that instruction set.
@@ -89,7 +89,7 @@ struct TestScene {
   RenderResult render(const RenderSettings& settings) const {
     RenderMonitor monitor;
     return visitView(
-        [&](const SceneView& scene) { return fenestra::render(scene, settings, monitor); });
+        [&](const SceneView& scene) { return fenestra::core::render(scene, settings, monitor); });
   }
 };
 
@@ -113,4 +113,4 @@ inline Estimate estimateMean(const Film& film) {
   return estimate;
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

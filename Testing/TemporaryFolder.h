@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class TemporaryFolder {
 public:
@@ -40,4 +40,4 @@ inline std::string readBytes(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

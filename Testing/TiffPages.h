@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct TiffPages {
   std::uint32_t columns = 4, rows = 3;
@@ -65,4 +65,4 @@ private:
   }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

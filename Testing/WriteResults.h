@@ -5,7 +5,7 @@
 #include "io/InputRegistry.h"
 #include "io/Outputs.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Removes the path from the input registry, so that tests may overwrite files that they have read.
 inline void forgetIfRead(const std::filesystem::path& path) {
@@ -31,4 +31,4 @@ inline void writeImage(const Image& image, const ImagePlane& plane,
   outputs.commit();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

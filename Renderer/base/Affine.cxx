@@ -1,6 +1,6 @@
 #include "base/Affine.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 double Mat3::determinant() const {
   const Mat3& m = *this;
@@ -37,4 +37,4 @@ Affine makeRotation(double angle, const Vec3& axis) {
                                {xz - s.y(), yz + s.x(), diagonal.z()}));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

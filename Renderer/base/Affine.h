@@ -3,7 +3,7 @@
 
 #include "base/Tuple.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 using Vec3 = Vector<double, 3>;
 
@@ -128,4 +128,4 @@ constexpr Affine makeScaling(const Vec3& factors) {
 /// Right-handed rotation about a unit axis through the origin; radians.
 Affine makeRotation(double angle, const Vec3& axis);
 
-} // namespace fenestra
+} // namespace fenestra::core

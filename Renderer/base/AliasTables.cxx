@@ -1,6 +1,6 @@
 #include "base/AliasTables.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 void AliasTables::append(std::span<const double> cumulative) {
   const std::uint64_t full = std::uint64_t{1} << (32 - bits); // capacity of a slot
@@ -35,4 +35,4 @@ void AliasTables::append(std::span<const double> cumulative) {
     fill(slot, slot);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

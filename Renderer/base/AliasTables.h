@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Alias method (Walker 1977; Vose 1991) in integer arithmetic. The low bits of a random word
 /// select one of 2^bits slots. The remaining bits, a number below thresholdRange(), are compared
@@ -34,4 +34,4 @@ struct AliasTables {
   void append(std::span<const double> cumulative);
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

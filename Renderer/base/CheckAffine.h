@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Makes an Error from a description, adding the file and field, or the option.
 using MakeError = std::function<Error(const std::string& what)>;
@@ -26,4 +26,4 @@ inline Affine checkAffine(const Affine& map, const MakeError& makeError) {
   return map;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

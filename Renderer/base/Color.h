@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Luminance of linear Rec. 709.
 inline double luminance(const Rgb& color) {
@@ -33,4 +33,4 @@ inline Rgb encodeSrgb(const Rgb& linear) {
   });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

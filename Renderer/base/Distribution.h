@@ -5,7 +5,7 @@
 #include <ranges>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Mean, 95th percentile and maximum of values, in their unit; 0 if there are none.
 struct Distribution {
@@ -29,4 +29,4 @@ auto findMedian(Values&& values) {
   return *middle;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

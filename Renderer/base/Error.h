@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class ErrorKind {
   request, ///< what the user asks for is impossible
@@ -76,4 +76,4 @@ requires(!std::same_as<File, ErrorCode>) Error
   return outputError(ErrorCode::unwritableFile, file, detail...);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

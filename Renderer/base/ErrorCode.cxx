@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr auto words = [] {
@@ -90,4 +90,4 @@ std::string_view toString(ErrorCode code) {
   return std::ranges::find(words, code, &std::pair<ErrorCode, std::string_view>::first)->second;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class ErrorCode : std::uint8_t {
   // Files, any field of a file, any part of a request
@@ -92,4 +92,4 @@ enum class ErrorCode : std::uint8_t {
 /// The code in words, like "missing-file".
 std::string_view toString(ErrorCode code);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <hwy/targets.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Bits of the instruction sets that both program and machine support, before any choice by
@@ -39,4 +39,4 @@ void useInstructionSet(const std::string& name) {
                          join(instructionSets(), ", "));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Instruction sets that both the program and this machine support, best first.
 std::vector<std::string> instructionSets();
@@ -16,4 +16,4 @@ std::string instructionSet();
 /// while SIMD code runs.
 void useInstructionSet(const std::string& name);
 
-} // namespace fenestra
+} // namespace fenestra::core

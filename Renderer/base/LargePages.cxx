@@ -5,7 +5,7 @@
 
 #include <sys/mman.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Large page of x86-64, and of ARM with base pages of 4 KiB; bytes.
@@ -36,4 +36,4 @@ void freeLargePages(void* memory) noexcept {
   std::free(memory);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

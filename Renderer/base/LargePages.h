@@ -7,7 +7,7 @@
 #include <new>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Allocates at least `bytes`; never returns a null pointer. Large arrays get large pages if the
 /// system has them (Linux: transparent huge pages, set to `always` or `madvise`). A page is
@@ -37,4 +37,4 @@ struct LargePages {
 template <typename T>
 using LargeArray = std::vector<T, LargePages<T>>;
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline float narrow(double x) {
   return static_cast<float>(x);
@@ -28,4 +28,4 @@ inline AffineRows affineRows(const Affine& map) {
   return rows;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

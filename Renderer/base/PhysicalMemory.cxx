@@ -2,11 +2,11 @@
 
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 
 double physicalMemory() {
   return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) *
          static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -1,8 +1,8 @@
 #pragma once
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Bytes of memory that the machine has.
 double physicalMemory();
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Bit mixer with full avalanche (Stafford's variant 13 of MurmurHash3's finalizer).
 constexpr std::uint64_t mixBits(std::uint64_t x) {
@@ -70,4 +70,4 @@ inline Vec3 sampleUniformSphere(const Vec2& u) {
   return {r * std::cos(2.0 * pi * u.y()), r * std::sin(2.0 * pi * u.y()), z};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class Sampling {
   stratified, ///< the first dimensions are stratified over blocks of a pixel's samples
@@ -144,4 +144,4 @@ private:
 
 inline constexpr Sampler::Nets Sampler::nets = Sampler::makeNets();
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -1,7 +1,7 @@
 #pragma once
 // Scalar counterpart of base/Simd-inl.h and base/SimdMath-inl.h: one lane, in double. Formulas that
 // scalar and SIMD code share are written once, with these names, in files named *Formulas-inl.h.
-// Each is included inside a namespace: fenestra::scalar, or that of an instruction set.
+// Each is included inside a namespace: fenestra::core::scalar, or that of an instruction set.
 
 #include "base/Vector.h"
 
@@ -10,7 +10,7 @@
 /// Highway's HWY_INLINE, for shared formulas.
 #define FENESTRA_INLINE inline __attribute__((always_inline))
 
-namespace fenestra::scalar {
+namespace fenestra::core::scalar {
 
 using Real = double; ///< the type of one lane of Float
 using Float = double;
@@ -86,4 +86,4 @@ inline Rgb toColor(const Float3& v) {
   return {v.x, v.y, v.z};
 }
 
-} // namespace fenestra::scalar
+} // namespace fenestra::core::scalar

@@ -24,7 +24,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -299,7 +299,7 @@ HWY_INLINE void forEachLane(LaneMask which, Visit&& visit) {
     visit(static_cast<std::size_t>(std::countr_zero(left)));
 }
 
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

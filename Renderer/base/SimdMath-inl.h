@@ -14,7 +14,7 @@
 #include <initializer_list>
 
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 
 using Real = float; ///< the type of one lane of Float
 
@@ -221,7 +221,7 @@ private:
   Int m_indices;
 };
 
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -13,7 +13,7 @@
 #include "base/SimdMath-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 
 /// The 32 leading bits of each of the PrimarySamples, in the order of Sampler's words.
 struct SimdPrimarySamples {
@@ -54,7 +54,7 @@ HWY_INLINE Float toUniformBelow1(UInt bits) {
   return toFloat(bitsAsInt(shiftRight<8>(bits))) * 0x1p-24F;
 }
 
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Per set of eight lanes: eight indices of one byte each, the first in the lowest byte.
 using LaneTable = std::array<std::uint64_t, 256>;
@@ -37,4 +37,4 @@ constexpr LaneTable makeRankTable() {
 
 inline constexpr LaneTable lanePackTable = makePackTable(), laneRankTable = makeRankTable();
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class Stopwatch {
 public:
@@ -24,4 +24,4 @@ private:
   Clock::time_point m_start = Clock::now();
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

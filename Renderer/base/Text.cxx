@@ -5,7 +5,7 @@
 #include <cctype>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 
 std::string toString(double x, int digits) {
   std::array<char, 64> text;
@@ -102,4 +102,4 @@ std::optional<std::vector<double>> parseNumbers(std::string_view text) {
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Concatenates texts and paths as they are, and integers in decimal.
 template <typename... Parts>
@@ -99,4 +99,4 @@ inline std::optional<std::int64_t> parseInteger(std::string_view text) {
 /// Finite numbers separated by whitespace, as Slicer writes them; nullopt: any other text.
 std::optional<std::vector<double>> parseNumbers(std::string_view text);
 
-} // namespace fenestra
+} // namespace fenestra::core

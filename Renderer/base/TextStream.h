@@ -7,7 +7,7 @@
 #include <sstream>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 
 template <typename Stream>
 class ThrowingStream : public Stream {
@@ -22,4 +22,4 @@ public:
 using TextWriter = ThrowingStream<std::ostringstream>;
 using TextReader = ThrowingStream<std::istringstream>;
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <ostream>
 
-namespace fenestra {
+namespace fenestra::core {
 
 template <typename T, int N>
 class Vector;
@@ -289,4 +289,4 @@ public:
   }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

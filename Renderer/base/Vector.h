@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-namespace fenestra {
+namespace fenestra::core {
 
 using Vec2 = Vector<double, 2>;
 using Size3 = Vector<std::int64_t, 3>;
@@ -111,4 +111,4 @@ struct Frame {
   Vec3 toLocal(const Vec3& v) const { return {v.dot(tangent), v.dot(bitangent), v.dot(normal)}; }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

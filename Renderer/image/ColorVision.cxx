@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Linear Rec. 709 to XYZ (IEC 61966-2-1), and the XYZ of its white point.
@@ -114,4 +114,4 @@ double deltaE2000(const Lab& x, const Lab& y) {
   return std::sqrt(std::max(0.0, l * l + c * c + h * h + rT * c * h));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

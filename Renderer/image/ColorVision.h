@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Normal vision, and dichromacy: no working L, M or S cones.
 enum class ColorVision { normal, protan, deutan, tritan };
@@ -32,4 +32,4 @@ double deltaE76(const Lab& x, const Lab& y);
 /// CIEDE2000 (Sharma, Wu, Dalal 2005, eq. 2 to 22), k_L = k_C = k_H = 1.
 double deltaE2000(const Lab& x, const Lab& y);
 
-} // namespace fenestra
+} // namespace fenestra::core

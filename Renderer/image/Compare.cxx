@@ -3,7 +3,7 @@
 #include "base/Error.h"
 #include "image/ImagePair.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double fullColorZ = 5.0; ///< |z| that a difference image shows in full color
@@ -155,4 +155,4 @@ void attachError(Image& image, const Image& error) {
     image.channels[errorNames[c]] = *planes[c];
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

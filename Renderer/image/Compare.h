@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Statistics of z = (a - b) / sqrt(se_a^2 + se_b^2) over pixels and R, G, B. Two independent
 /// unbiased renders with correct standard errors give mean 0 and deviation 1. Excludes values whose
@@ -48,4 +48,4 @@ Image differenceImage(const Image& a, const Image& b);
 /// Throws Error (input) for different sizes or missing channels.
 void attachError(Image& image, const Image& error);
 
-} // namespace fenestra
+} // namespace fenestra::core

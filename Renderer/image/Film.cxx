@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 
 void PixelSums::add(const PathSample& sample) {
   if (samples % 2 == 0) {
@@ -111,4 +111,4 @@ SampleCounts Film::sampleCounts() const {
   return counts;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Contribution of one path to its pixel.
 struct PathSample {
@@ -119,4 +119,4 @@ private:
   std::vector<PixelSums> m_pixels;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// One value per pixel, row 0 at the top.
 using Plane = std::vector<float>;
@@ -32,4 +32,4 @@ struct ImagePlane {
   Vec3 rowStep = -Vec3::UnitZ();   ///< to the next pixel below, mm
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

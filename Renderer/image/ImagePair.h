@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline constexpr std::array<const char*, 3> colorNames = {"R", "G", "B"};
 inline constexpr std::array<const char*, 3> errorNames = {"error.R", "error.G", "error.B"};
@@ -67,4 +67,4 @@ struct ImagePair {
   }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

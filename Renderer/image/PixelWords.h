@@ -6,7 +6,7 @@
 #include <array>
 #include <bit>
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline constexpr std::size_t wordsPerPixel = 30;
 
@@ -50,4 +50,4 @@ inline void fromWords(const PixelWords& words, PixelSums& pixel) {
       pixel, [&]<typename Number>(Number& number) { number = std::bit_cast<Number>(words[i++]); });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <numeric>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Interleaves the bits of a number below 2^16 with zeros.
@@ -46,4 +46,4 @@ std::vector<int> Tiles::select(const Shard& shard) const {
   return selected;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Shard `index`, from 0, of `count` shards of an image.
 struct Shard {
@@ -38,4 +38,4 @@ private:
   int m_width, m_height, m_columns, m_rows;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::string_view alphabet =
@@ -42,4 +42,4 @@ std::optional<std::string> fromBase64(std::string_view text) {
   return bytes;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

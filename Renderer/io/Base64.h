@@ -5,11 +5,11 @@
 #include <string>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 std::string toBase64(std::string_view bytes);
 
 /// Decodes groups of four digits, the last of which may end in "="; nullopt: any other text.
 std::optional<std::string> fromBase64(std::string_view text);
 
-} // namespace fenestra
+} // namespace fenestra::core

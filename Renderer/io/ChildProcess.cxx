@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Executes the program, in the child. Async-signal-safe, since other threads may have held locks
@@ -104,4 +104,4 @@ std::string ChildProcess::errors() const {
   return text;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

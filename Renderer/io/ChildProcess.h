@@ -9,7 +9,7 @@
 
 #include <sys/types.h>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Child process with default signal handlers, at most one file of this process, no standard input,
 /// standard output discarded and standard error recorded. Signals of the terminal do not reach it.
@@ -43,4 +43,4 @@ private:
   Descriptor m_errors; ///< file in memory
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

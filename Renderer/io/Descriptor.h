@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Owns a file descriptor and closes it; -1: none.
 class Descriptor {
@@ -52,4 +52,4 @@ inline bool hasName(const Descriptor& file) {
   return ::fstat(*file, &status) != 0 || status.st_nlink > 0;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

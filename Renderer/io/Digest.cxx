@@ -9,7 +9,7 @@
 #include <fstream>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t wordBytes = 8;
@@ -63,4 +63,4 @@ std::uint64_t computeDigest(const std::filesystem::path& file, std::uint64_t byt
   return digest.value();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

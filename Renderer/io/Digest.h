@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Chained mixing of words of eight bytes: two contents that differ within one aligned word always
 /// have different digests.
@@ -26,4 +26,4 @@ private:
 /// Error (input) if the file cannot be read.
 std::uint64_t computeDigest(const std::filesystem::path& file, std::uint64_t bytes = UINT64_MAX);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Content of the file at `name`, a path under Resources/ like "color/fenestra.ocio". Empty: no
 /// such file (`name` may come from a user).
@@ -15,4 +15,4 @@ std::string_view findResource(std::string_view name);
 /// Paths under Resources/ that start with `prefix`, like "transfer/", sorted.
 std::vector<std::string> listResources(std::string_view prefix);
 
-} // namespace fenestra
+} // namespace fenestra::core

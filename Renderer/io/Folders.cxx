@@ -5,7 +5,7 @@
 
 #include <fcntl.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::string_view folderPrefix = "fenestra-scene-";
@@ -110,4 +110,4 @@ void removeStaleFolders() {
   removeStaleTempFiles(parent, folderPrefix, TempFileGuard::Kind::folder);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <list>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Creates `folder`, for results, and its missing parents. The destructor removes those that are
 /// still empty. Throws Error (output).
@@ -50,4 +50,4 @@ private:
 /// Ignores failures.
 void removeStaleFolders();
 
-} // namespace fenestra
+} // namespace fenestra::core

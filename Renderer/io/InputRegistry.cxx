@@ -11,7 +11,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 struct Registry {
@@ -192,4 +192,4 @@ std::string lowercaseExtension(const std::filesystem::path& path) {
   return toLower(path.extension().string());
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

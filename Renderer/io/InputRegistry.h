@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Identity of a file, equal for all its names and links. `birthTime` distinguishes a later file
 /// that reuses the inode number.
@@ -75,4 +75,4 @@ void unregisterResult(const std::filesystem::path& path);
 /// The last extension with its dot, in lower case: ".GZ" of "a.nii.GZ" is ".gz".
 std::string lowercaseExtension(const std::filesystem::path& path);
 
-} // namespace fenestra
+} // namespace fenestra::core

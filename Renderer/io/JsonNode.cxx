@@ -9,7 +9,7 @@
 #include <fstream>
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr int maxDepth = 64;
@@ -152,4 +152,4 @@ void JsonNode::allowOnly(std::initializer_list<std::string_view> keys) const {
     }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Size limit of text files except Slicer's scenes, bytes. Parsed JSON takes about 25 times that.
 inline constexpr std::uint64_t maxTextBytes = std::uint64_t{4} << 20;
@@ -87,4 +87,4 @@ private:
   std::string m_source, m_path;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

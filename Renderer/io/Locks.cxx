@@ -10,7 +10,7 @@
 
 #include <fcntl.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 void sleepBriefly() {
@@ -66,4 +66,4 @@ void NameLock::tryTake(const std::filesystem::path& lock, const std::filesystem:
     throw writeError(path, code);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

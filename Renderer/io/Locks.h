@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Locks folders, so that the results that two runs place there do not mix. Placing takes
 /// milliseconds: after 2 s of waiting the caller proceeds without the lock. Folders that cannot be
@@ -35,4 +35,4 @@ private:
   std::optional<TempFileGuard> m_name; ///< removed before the lock is released
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Size in bytes of the UTF-8 character at the start of `text`; 0: empty, or not valid UTF-8 (The
 /// Unicode Standard 15.0, table 3-7).
@@ -54,4 +54,4 @@ inline std::string sanitize(const std::string& text) {
   return toOneLine(text.substr(0, end));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

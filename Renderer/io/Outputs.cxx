@@ -17,7 +17,7 @@
 
 #include <fcntl.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -278,4 +278,4 @@ void Outputs::commit(Durability durability) {
       sendContent(*result->stream, std::exchange(result->pending, {}), result->path);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Size and digest (io/Digest.h) of a content, which identify a result.
 struct ContentDigest {
@@ -81,4 +81,4 @@ private:
   std::set<std::filesystem::path> m_folders;          ///< folders in which files can be created
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

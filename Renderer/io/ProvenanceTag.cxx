@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t checksumDigits = 8, trailingBytes = 4;
@@ -91,4 +91,4 @@ bool hasProvenanceTag(const std::filesystem::path& path) {
                              [&](std::uint64_t at) { return isTagValid(file, at); });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Placeholder that an encoder writes once, into a text field of its format. sealProvenanceTag()
 /// replaces the zeros by the checksum (CRC-32, 8 digits) of all other bytes except the 4 after the
@@ -20,4 +20,4 @@ std::string sealProvenanceTag(std::string content);
 /// read. Reads in blocks: constant memory, time linear in the file's size.
 bool hasProvenanceTag(const std::filesystem::path& path);
 
-} // namespace fenestra
+} // namespace fenestra::core

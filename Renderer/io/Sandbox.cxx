@@ -25,7 +25,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -302,4 +302,4 @@ void serveSandbox(int argc, char** argv) {
   ::_exit(1);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

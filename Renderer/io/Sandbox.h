@@ -21,7 +21,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Limits of a child. Beyond `seconds` it is killed; beyond `bytes` its allocations fail.
 struct SandboxLimits {
@@ -107,4 +107,4 @@ void limitMemory(std::uint64_t bytes);
 /// return. In any other process: enables SandboxedReader::request and returns.
 void serveSandbox(int argc, char** argv);
 
-} // namespace fenestra
+} // namespace fenestra::core

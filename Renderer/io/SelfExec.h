@@ -6,7 +6,7 @@
 
 #include <sys/auxv.h>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// File to execute: the same build, even if the program's file has been replaced.
 inline constexpr const char* selfExecutable = "/proc/self/exe";
@@ -36,4 +36,4 @@ private:
   std::vector<char*> m_pointers; ///< to the elements of m_args, then null
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <sys/mman.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr const char* slotName = "fenestra-slot";
@@ -91,4 +91,4 @@ void SharedSlot::write(std::uint64_t key, const Numbers& numbers,
     transferAll(::pwrite, *m_file, head, 0);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

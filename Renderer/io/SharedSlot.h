@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// A file in memory without a name, which ends with its last process. The processes that read and
 /// write it lock it meanwhile; one that is killed while it writes leaves it empty.
@@ -36,4 +36,4 @@ private:
   Descriptor m_file;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline std::string systemMessage(int code) {
   return std::generic_category().message(code);
@@ -71,4 +71,4 @@ inline void writeAll(int file, std::string_view content, const std::filesystem::
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -14,7 +14,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::string_view digits = "0123456789abcdef";
@@ -197,4 +197,4 @@ void endWhenUnblocked(void (*end)()) {
     end();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

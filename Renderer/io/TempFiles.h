@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Prefix of temporary files beside results.
 inline constexpr std::string_view tempFilePrefix = ".fenestra-";
@@ -72,4 +72,4 @@ public:
 /// as no thread has a SignalBlocker. For a signal handler.
 void endWhenUnblocked(void (*end)());
 
-} // namespace fenestra
+} // namespace fenestra::core

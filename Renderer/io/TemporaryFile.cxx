@@ -7,7 +7,7 @@
 #include <fcntl.h>
 #include <sys/xattr.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 std::filesystem::path makeSiblingName(const std::filesystem::path& target) {
@@ -136,4 +136,4 @@ void TemporaryFile::undoPlace() noexcept {
   m_placed = Placed::no;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class Durability { synced, none }; ///< synced: on the disk before the function returns
 
@@ -48,4 +48,4 @@ private:
   Placed m_placed = Placed::no;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

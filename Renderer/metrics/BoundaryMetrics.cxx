@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Camera of the clip; null for ClipNone.
@@ -152,4 +152,4 @@ BoundaryMetrics measureBoundary(const Clip& clip, const Domain& volume, const Ma
   return metrics;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include "clip/focus/FocusDepth.h"
 #include "model/volume/Domain.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Compares focus depth and context depth along the outline, which is located by bisection between
 /// a focus sample and a neighbor outside. The context depth is where the context begins just
@@ -29,4 +29,4 @@ constexpr double depthJump = 2.0;
 BoundaryMetrics measureBoundary(const Clip& clip, const Domain& volume, const Mask& focus,
                                 const FocusDepth& depths);
 
-} // namespace fenestra
+} // namespace fenestra::core

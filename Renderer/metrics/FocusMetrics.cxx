@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 double sum(const std::vector<double>& values) {
@@ -173,4 +173,4 @@ std::optional<FocusReport> measureFocus(const SceneView& scene, const MinMaxGrid
   return report;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "integrator/render/Render.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Point where the camera ray through a pixel's center hits the focus.
 struct FocusPoint {
@@ -50,4 +50,4 @@ std::optional<FocusReport> measureFocus(const SceneView& scene, const MinMaxGrid
                                         const Mask& focus, const std::vector<double>& depth,
                                         std::uint64_t seed, const StopFlag& stop);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Largest distance of a visible focus point from the axis, mm.
@@ -62,4 +62,4 @@ SurfaceChange measureChange(const VisibleSurface& before, const VisibleSurface& 
   return change;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Clipping surface at an image's pixels, row by row from the top.
 struct VisibleSurface {
@@ -35,4 +35,4 @@ struct SurfaceChange {
 SurfaceChange measureChange(const VisibleSurface& before, const VisibleSurface& after,
                             const Vec3& axis, double degrees);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -2,7 +2,7 @@
 
 #include "io/EmbeddedResources.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 void from_json(const Anatomy& numbers, Vec2& vector) {
   vector = {numbers.at(0).get<double>(), numbers.at(1).get<double>()};
@@ -72,4 +72,4 @@ void from_json(const Anatomy& parts, Solid& solid) {
     solid = combineSolids(solid, parts[i]);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace fenestra {
+namespace fenestra::core {
 
 using Anatomy = nlohmann::json;
 
@@ -28,4 +28,4 @@ void from_json(const Anatomy& numbers, Vec3& vector);
 /// and may have a frame of its own, {"frame": [ORIGIN, AXIS, UP]}, or be {"paired": true}.
 void from_json(const Anatomy& parts, Solid& solid);
 
-} // namespace fenestra
+} // namespace fenestra::core

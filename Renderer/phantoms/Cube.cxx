@@ -1,7 +1,7 @@
 #include "base/Error.h"
 #include "phantoms/Phantoms.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -61,4 +61,4 @@ Phantom makeCubePhantom(const CubeOptions& options) {
   return phantom;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 #include "phantoms/Painter.h"
 #include "phantoms/Phantoms.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -86,4 +86,4 @@ Phantom makeFetusPhantom(const Size3& size, const PhantomProgress& progress) {
   return phantom;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 #include "phantoms/Noise.h"
 #include "phantoms/Phantoms.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -201,4 +201,4 @@ Phantom makeFootPhantom(const Size3& size, const PhantomProgress& progress) {
   return phantom;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

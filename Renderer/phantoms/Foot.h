@@ -5,7 +5,7 @@
 #include "phantoms/FootBones.h"
 #include "phantoms/Painter.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// A point with the distances that most layers need.
 struct FootSite : PaintSite {
@@ -50,4 +50,4 @@ private:
   std::vector<Solid> m_superficial; ///< tendons that raise the skin
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 #include "phantoms/Anatomy.h"
 #include "phantoms/Noise.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -78,4 +78,4 @@ double FootBones::shaftPosition(std::size_t bone, const Vec3& p) const {
   return smoothStep(0.12, 0.38, t) * smoothStep(0.92, 0.68, t);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

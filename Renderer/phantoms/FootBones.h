@@ -9,7 +9,7 @@
 #include <array>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct FootBone {
   std::string id;                     ///< "calcaneus", "metatarsal_1", "proximal_phalanx_1", ...
@@ -45,4 +45,4 @@ private:
   std::vector<FootBone> m_bones;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

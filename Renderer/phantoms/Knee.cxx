@@ -5,7 +5,7 @@
 #include "phantoms/Painter.h"
 #include "phantoms/Phantoms.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -329,4 +329,4 @@ Phantom makeKneePhantom(const Size3& size, const PhantomProgress& progress) {
   return phantom;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 #include "phantoms/Anatomy.h"
 #include "phantoms/Noise.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -287,4 +287,4 @@ double KneeBones::patellarCartilage(const Vec3& p) const {
   return taperThickness(std::clamp(thickness, 1.4, 2.65), margin);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Round defect of the femoral cartilage, centered at `x` along the transcondylar axis and `angle`
 /// around it.
@@ -64,4 +64,4 @@ private:
   Solid m_femoralShaft, m_tibialShaft, m_fibula, m_patellaBody;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 #include "phantoms/Noise.h"
 #include "phantoms/Shapes.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -68,4 +68,4 @@ double biasField(const Vec3& p) {
   return 1.0 + coil + 0.05 * valueNoise(p / 55.0, 85);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "base/Vector.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 // Signals including the tissue's texture, before bias field and noise; `point` in the knee's frame.
 double muscleSignal(const Vec3& point);
@@ -19,4 +19,4 @@ double biasField(const Vec3& point);
 
 inline constexpr double noiseSigma = 11.0; ///< per quadrature channel; SNR of muscle: 32
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -89,4 +89,4 @@ double ricianNoise(double signal, double sigma, std::uint64_t voxel) {
   return std::hypot(signal + noise.x(), noise.y());
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Value noise on the unit lattice, smoothly interpolated, in [-1, 1]. Divide `point` by the
 /// feature size; different seeds give independent fields.
@@ -19,4 +19,4 @@ double normalNoise(std::uint64_t voxel);
 /// Data").
 double ricianNoise(double signal, double sigma, std::uint64_t voxel);
 
-} // namespace fenestra
+} // namespace fenestra::core

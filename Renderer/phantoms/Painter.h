@@ -9,7 +9,7 @@
 #include <atomic>
 #include <functional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct PaintSite {
   Vec3 point;     ///< world
@@ -215,4 +215,4 @@ Phantom paintPhantom(const Subject& subject, const Grid& grid, const std::string
   return phantom;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

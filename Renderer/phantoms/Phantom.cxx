@@ -2,7 +2,7 @@
 
 #include "base/Error.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 Grid makePhantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes,
                      const Vec3& center) {
@@ -16,4 +16,4 @@ Grid makePhantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axe
   return {size, indexToWorld};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct PhantomSegment {
   std::string id;   ///< stable, without spaces
@@ -45,4 +45,4 @@ using PhantomProgress = std::function<void(double)>;
 Grid makePhantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes,
                      const Vec3& center);
 
-} // namespace fenestra
+} // namespace fenestra::core

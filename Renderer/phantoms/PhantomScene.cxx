@@ -11,7 +11,7 @@
 #include <map>
 #include <new>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::string makePhantomRoi(const Phantom& phantom) {
   return sealProvenanceTag(file.dump(4) + "\n");
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Content of a .mrml file. Its nodes are named after `name`: Volume, Segmentation, VolumeProperty
 /// and MarkupsROI with their storage and display nodes; uncropped GPU volume rendering; and view 1
@@ -28,4 +28,4 @@ std::string joinSpaced(const Numbers&... numbers) {
   return stream.str();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 
 #include <fstream>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -165,4 +165,4 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
   return written;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

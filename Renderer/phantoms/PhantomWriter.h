@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Writes into `directory` (created if missing): `name`.nrrd (the volume), .seg.nrrd (the segments,
 /// in layers), .vp.json and .vp (the volume property; .vp for Slicer before 5.10), -roi.mrk.json
@@ -20,4 +20,4 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
                                       const std::filesystem::path& directory,
                                       const std::string& name);
 
-} // namespace fenestra
+} // namespace fenestra::core

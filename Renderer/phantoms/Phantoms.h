@@ -4,7 +4,7 @@
 
 #include "phantoms/Phantom.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline constexpr Size3 kneeSize{300, 344, 120}, footSize{300, 120, 150}, fetusSize{160, 160, 160};
 
@@ -41,4 +41,4 @@ struct CubeOptions {
 /// only. Throws Error (request) unless edge > 0.
 Phantom makeCubePhantom(const CubeOptions& options = {});
 
-} // namespace fenestra
+} // namespace fenestra::core

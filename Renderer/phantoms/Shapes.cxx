@@ -1,6 +1,6 @@
 #include "phantoms/Shapes.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -219,4 +219,4 @@ Solid mirrorPair(const Solid& right) {
   return unite(right, placeSolid(mirror, right), 0.1);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Union, intersection and difference of two shapes, given by distances. They are blended where the
 /// distances differ by less than `blend`, mm.
@@ -70,4 +70,4 @@ Solid subtract(const Solid& solid, const Solid& removed, double blend);
 /// Union of `right` and its mirror image at the plane x = 0.
 Solid mirrorPair(const Solid& right);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -22,7 +22,7 @@
 #include <memory>
 #include <thread>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -300,4 +300,4 @@ int batchCommand(int argc, char** argv, int first) {
   return 0;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <fstream>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -165,4 +165,4 @@ void writeResults(const BatchResults& results, Outputs& outputs) {
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

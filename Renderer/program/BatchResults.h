@@ -3,7 +3,7 @@
 
 #include "program/RowManifest.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Rows of a batch, their outcomes, and their folder.
 struct BatchResults {
@@ -24,4 +24,4 @@ void declareResults(const BatchResults& results, Outputs& outputs);
 /// commits them. Throws Error (output).
 void writeResults(const BatchResults& results, Outputs& outputs);
 
-} // namespace fenestra
+} // namespace fenestra::core

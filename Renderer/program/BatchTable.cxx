@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,7 +45,7 @@ void requireFolderName(const std::string& name, const std::string& source,
                           notFirst.find(name.front()) == notFirst.npos &&
                           notLast.find(name.back()) == notLast.npos;
   if (!isPortable)
-    throw inputError(source, place, ": '", fenestra::sanitize(name),
+    throw inputError(source, place, ": '", fenestra::core::sanitize(name),
                      "' is not a valid folder name; use at most 100 letters, digits, blanks, dots, "
                      "- and _, beginning with a letter, digit or _");
 }
@@ -68,7 +68,7 @@ std::vector<const Option*> parseColumns(const CsvRecord& head, const std::string
     const bool isKnown = option ? isImageOption(*option) : std::ranges::count(known, name) > 0;
     if (!isKnown) {
       const std::string likely = findNearest(toLower(name), known);
-      throw inputError(source, "line ", head.line, ": '", fenestra::sanitize(name),
+      throw inputError(source, "line ", head.line, ": '", fenestra::core::sanitize(name),
                        "' is no valid column",
                        likely.empty() ? "; columns are name, input and options of fenestra render"
                                       : "; did you mean " + likely + "?");
@@ -207,4 +207,4 @@ std::vector<BatchRow> readBatchTable(const fs::path& path, const OptionValues& c
   return rows;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

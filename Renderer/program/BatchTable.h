@@ -3,7 +3,7 @@
 
 #include "program/RenderOptions.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Case of a batch.
 struct BatchRow {
@@ -22,4 +22,4 @@ const CommandSyntax& batchSyntax();
 /// names, and more than 10,000 rows. Each row's own process checks its option values.
 std::vector<BatchRow> readBatchTable(const std::filesystem::path& path, const OptionValues& common);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <new>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using nlohmann::json;
@@ -272,4 +272,4 @@ void Checkpoint::save(const RenderResult& result) {
   m_savedPaths = result.counters.paths;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

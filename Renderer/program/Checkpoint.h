@@ -9,7 +9,7 @@
 #include "program/RenderSteps.h"
 #include "scene/CheckpointFile.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// True if samples depend on the option; false for stopping criteria, display and output.
 bool isSampleOption(const Option& option);
@@ -84,4 +84,4 @@ private:
   bool m_hasWarned = false;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -14,7 +14,7 @@
 #include <iostream>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 const Option commonTable[] = {
@@ -224,4 +224,4 @@ std::vector<Option> listOptions(const CommandSyntax& syntax) {
   return options;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Switches that every command accepts: --help (-h) and --version.
 extern const std::span<const Option> commonOptions;
@@ -32,4 +32,4 @@ std::string findLikelyOption(std::string_view word, std::span<const Option> opti
 /// Options that the command accepts, in table order.
 std::vector<Option> listOptions(const CommandSyntax& syntax);
 
-} // namespace fenestra
+} // namespace fenestra::core

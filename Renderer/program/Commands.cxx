@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <iostream>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr Command subcommands[] = {
@@ -65,4 +65,4 @@ int dispatch(int argc, char** argv) {
   return renderCommand(argc, argv, 1);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class OptionValues;
 struct CommandSyntax;
@@ -49,4 +49,4 @@ int threadCount(const OptionValues& options);
 /// started.
 void configureMachine(const OptionValues& options);
 
-} // namespace fenestra
+} // namespace fenestra::core

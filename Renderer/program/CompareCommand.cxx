@@ -10,7 +10,7 @@
 
 #include <cstdio>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr const char* compareGroup = "Compare";
@@ -100,4 +100,4 @@ int compareCommand(int argc, char** argv, int first) {
   return 0;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

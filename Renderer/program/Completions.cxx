@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Values that a shell can suggest for an option or an argument.
@@ -274,4 +274,4 @@ std::string makeFishCompletions() {
   return text;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

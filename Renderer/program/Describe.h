@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Manual page in mdoc format.
 std::string makeManPage();
@@ -14,4 +14,4 @@ std::string makeBashCompletions();
 std::string makeZshCompletions();
 std::string makeFishCompletions();
 
-} // namespace fenestra
+} // namespace fenestra::core

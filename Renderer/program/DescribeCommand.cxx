@@ -9,7 +9,7 @@
 #include <iostream>
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 const std::map<std::string, std::string (*)()> descriptions = {
@@ -48,4 +48,4 @@ int describeCommand(int argc, char** argv, int first) {
   return 0;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr auto adviceTable = [] {
@@ -83,4 +83,4 @@ void composeReport(nlohmann::ordered_json& report) {
       composeReport(part);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Exit status of a command that fails with an error of this kind.
 constexpr int exitStatus(ErrorKind kind) {
@@ -25,4 +25,4 @@ std::vector<std::string> composeMessages(const std::vector<Message>& messages);
 /// Replaces the messages in a report of scene/Inspection.h by such lines.
 void composeReport(nlohmann::ordered_json& report);
 
-} // namespace fenestra
+} // namespace fenestra::core

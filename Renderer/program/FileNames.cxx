@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -96,4 +96,4 @@ std::string toCanonicalArgument(const std::string& word, std::span<const Option>
   return concat("--", option->name, value ? concat("=", *value) : "");
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

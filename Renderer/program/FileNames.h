@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// `name` relative to `folder`; for a member of an archive, the archive's relative name and the
 /// member's. A text that names no file is returned unchanged.
@@ -23,4 +23,4 @@ std::vector<std::string> toRelativeArguments(const std::vector<std::string>& wor
 /// Argument "--name=value" with the canonical name; any other argument unchanged.
 std::string toCanonicalArgument(const std::string& word, std::span<const Option> options);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t pageWidth = 80,
@@ -170,4 +170,4 @@ std::string makeCommandHelp(const CommandSyntax& syntax) {
                 formatGroups(syntax, [](const Option&) { return true; }));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

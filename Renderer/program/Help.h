@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Five lines for a command line without arguments.
 std::string makeUsage();
@@ -22,4 +22,4 @@ bool isHelpTopic(std::string_view topic);
 /// Summary, example, positional arguments, and options by group.
 std::string makeCommandHelp(const CommandSyntax& syntax);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <iostream>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr const char* inspectGroup = "Inspect";
@@ -97,4 +97,4 @@ int inspectCommand(int argc, char** argv, int first) {
   return 0;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

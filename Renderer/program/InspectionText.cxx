@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -363,4 +363,4 @@ std::string formatInspection(const Inspection& inspection) {
          formatSection("Ignored", formatList(inspection["ignored"]));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

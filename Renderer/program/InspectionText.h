@@ -5,10 +5,10 @@
 
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Lines of at most 100 characters; a truncated list states how much is missing. `inspection`: from
 /// inspectInput(), with the advice of composeReport().
 std::string formatInspection(const Inspection& inspection);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -17,7 +17,7 @@
 #include <thread>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Starts `count` threads at the same time, to check that they can run: TBB's threads start each
@@ -66,4 +66,4 @@ void configureMachine(const OptionValues& options) {
   pinInstructions();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

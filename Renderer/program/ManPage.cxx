@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// "November 26, 2026" from "2026-11-26".
@@ -147,4 +147,4 @@ std::string makeManPage() {
                 listEnd, lists, rest, ".Sh SEE ALSO\n.Lk ", homepageText, "\n");
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

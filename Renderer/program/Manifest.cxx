@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <fstream>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using nlohmann::json;
@@ -183,4 +183,4 @@ void Manifest::finish(int item, const WrittenFiles& files, const json& extra, Ou
   write(outputs);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

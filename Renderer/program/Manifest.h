@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class Manifest {
 public:
@@ -82,4 +82,4 @@ private:
   std::map<int, Item> m_finished;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

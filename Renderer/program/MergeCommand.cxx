@@ -11,7 +11,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -154,4 +154,4 @@ int mergeCommand(int argc, char** argv, int first) {
   return renderScene(job, options.arguments(), checkpoint, outputs);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -14,7 +14,7 @@
 #include <cstdio>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 // ---- options of an organ preset
@@ -266,4 +266,4 @@ SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include "program/RenderOptions.h"
 #include "scene/Input.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct SceneOptions {
   OptionValues values;
@@ -36,4 +36,4 @@ PresetOptions mergePreset(const OptionValues& given, const Input& input);
 
 RenderOptions makeRenderOptions(const PresetOptions& merged);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::string_view eraser = "\r\033[K";
@@ -68,4 +68,4 @@ bool isClosedOutputAllowed() {
   return mayCloseOutput;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

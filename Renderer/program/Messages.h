@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Later lines go to standard output, since Slicer reports all text on standard error as an error.
 void printLinesToOutput();
@@ -27,4 +27,4 @@ std::string_view barEraser();
 void allowClosedOutput();
 bool isClosedOutputAllowed();
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Finite number, optionally surrounded by blanks.
@@ -219,4 +219,4 @@ std::vector<std::string> OptionValues::arguments() const {
   return arguments;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

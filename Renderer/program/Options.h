@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class OptionValues;
 
@@ -283,4 +283,4 @@ struct OptionWord {
 /// Parses "--name", "--name=value", "-x", or "-x4" of an integer; nullopt: anything else.
 std::optional<OptionWord> parseOptionWord(std::span<const Option> options, std::string_view word);
 
-} // namespace fenestra
+} // namespace fenestra::core

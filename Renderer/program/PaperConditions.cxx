@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// What an option needs to have an effect.
@@ -75,4 +75,4 @@ OptionValues addPaperConditions(OptionValues values,
   return values;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "program/Options.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Help text: the options that it stands for.
 std::string describePaperConditions();
@@ -16,4 +16,4 @@ OptionValues addPaperConditions(OptionValues values,
 /// True for an option that --paper stands for.
 bool isPaperCondition(const std::string& name);
 
-} // namespace fenestra
+} // namespace fenestra::core

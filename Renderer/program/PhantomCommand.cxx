@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <mutex>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr const char* phantomGroup = "Phantom";
@@ -133,4 +133,4 @@ int phantomCommand(int argc, char** argv, int first) {
   return 0;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

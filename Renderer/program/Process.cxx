@@ -22,7 +22,7 @@
 #include <poll.h>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 void print(std::string_view text) {
@@ -108,4 +108,4 @@ void runProcess(int argc, char** argv, DispatchFunction dispatch) {
   std::_Exit(status == 0 && isStopRequested() ? stopStatus() : status);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -1,7 +1,7 @@
 #pragma once
 // Framework of every process of this program: streams, signals, errors, temporary files.
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Runs the command that the arguments name, and returns the exit status. May throw Error.
 using DispatchFunction = int (*)(int argc, char** argv);
@@ -10,4 +10,4 @@ using DispatchFunction = int (*)(int argc, char** argv);
 /// temporary files, and ends the process.
 [[noreturn]] void runProcess(int argc, char** argv, DispatchFunction dispatch);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <system_error>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 std::string formatNumber(const char* format, double value) {
@@ -81,4 +81,4 @@ std::vector<std::string> Progress::statusFields() const {
   return fields;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Shows progress from construction to destruction.
 class Progress {
@@ -46,4 +46,4 @@ private:
   std::jthread m_thread; ///< ends before the members above
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 std::string formatTime(double seconds) {
@@ -90,4 +90,4 @@ std::string ProgressView::drawLine(const std::vector<std::string>& status) const
   return line;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// A bar on standard error, erased at the end, or Slicer's progress tags on standard output.
 /// `automatic`: a bar if standard error is a terminal.
@@ -32,4 +32,4 @@ private:
   double m_fraction = 0.0; ///< last shown
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

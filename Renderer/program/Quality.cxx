@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 struct Level {
@@ -58,4 +58,4 @@ void removeQualityOptions(OptionValues& values) {
     values.remove(option);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "program/Options.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 std::vector<std::string> listQualityNames();
 /// Help text: each level with its options.
@@ -16,4 +16,4 @@ OptionValues expandQuality(const OptionValues& values);
 /// Removes --samples, --seconds and --noise, which replace --quality.
 void removeQualityOptions(OptionValues& values);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -22,7 +22,7 @@
 
 #include <sys/resource.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -389,4 +389,4 @@ int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first
   return renderScene(job, {argv + 1, argv + argc}, checkpoint, outputs, startWorkers);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Starts remote workers for a render and registers them in its monitor; empty: no workers. Keeps
 /// MPI out of this library.
@@ -22,4 +22,4 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
 /// The command `render`, with remote workers.
 int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first);
 
-} // namespace fenestra
+} // namespace fenestra::core

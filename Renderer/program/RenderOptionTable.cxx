@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr const char* sceneGroup = "Input and focus";
@@ -413,4 +413,4 @@ bool isAppearanceOption(const Option& option) {
   return isClipOption(option) || option.group == viewGroup || option.group == appearanceGroup;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

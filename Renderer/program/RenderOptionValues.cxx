@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdio>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// R,G,B, or one number for all three. `alternatives`: other valid values, for the message.
@@ -154,4 +154,4 @@ void readLayers(const OptionValues& values, const std::string& name, LayerSet& l
   layers = parseLayers(values.list(name));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

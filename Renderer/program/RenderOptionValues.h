@@ -9,7 +9,7 @@
 /// Values of render options that have a syntax of their own. Each function reads the value of
 /// option `name` from `values` into its last argument, and throws a usage error if it is invalid.
 
-namespace fenestra {
+namespace fenestra::core {
 
 void readMargins(const OptionValues& values, const std::string& name, FocusRequest& focus);
 void readVolumeSmoothing(const OptionValues& values, const std::string& name,
@@ -30,4 +30,4 @@ void readWord(const OptionValues& values, const std::string& name,
 void readSwitch(const OptionValues&, const std::string&, bool& isOn);
 void readLayers(const OptionValues& values, const std::string& name, LayerSet& layers);
 
-} // namespace fenestra
+} // namespace fenestra::core

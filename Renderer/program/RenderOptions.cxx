@@ -12,7 +12,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 bool hasMaterials(const RenderRequest& scene) {
@@ -262,4 +262,4 @@ RenderSettings makeSettings(const RenderOptions& options, const std::optional<Ba
   return settings;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

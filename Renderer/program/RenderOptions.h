@@ -6,7 +6,7 @@
 #include "scene/FilmImage.h"
 #include "scene/RenderRequest.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Which images are denoised: automatic, display images (.png, .tif) only; on, also .exr and .nrrd,
 /// in additional channels; off, none.
@@ -101,4 +101,4 @@ void requireScale(const RenderOptions& options, Projection projection);
 /// other inputs), else Background::standard.
 RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <future>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Options that reproduce the camera.
@@ -172,4 +172,4 @@ void writeImages(const RenderOptions& options, const PreparedScene& scene,
     file.get();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

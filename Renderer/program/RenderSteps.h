@@ -6,7 +6,7 @@
 #include "program/MergedOptions.h"
 #include "scene/PreparedScene.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct RenderJob {
   OptionValues stored; ///< given on the command line or stored in the scene
@@ -54,4 +54,4 @@ void writeImages(const RenderOptions& options, const PreparedScene& scene,
                  const RenderResult& result, const std::optional<FilteredImage>& filtered,
                  const std::vector<std::string>& arguments, Outputs& outputs);
 
-} // namespace fenestra
+} // namespace fenestra::core

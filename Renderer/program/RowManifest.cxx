@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,4 +199,4 @@ void RowManifest::finish(const RowOutcome& outcome) {
     removeCheckpoint();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

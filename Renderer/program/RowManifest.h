@@ -6,7 +6,7 @@
 #include "program/BatchTable.h"
 #include "program/Manifest.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Result of a row.
 struct RowOutcome {
@@ -67,4 +67,4 @@ private:
 std::filesystem::path rowImagePath(const BatchRow& row, const std::filesystem::path& folder);
 std::filesystem::path rowStatsPath(const BatchRow& row, const std::filesystem::path& folder);
 
-} // namespace fenestra
+} // namespace fenestra::core

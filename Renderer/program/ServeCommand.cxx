@@ -12,7 +12,7 @@
 #include <set>
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 class Server {
@@ -183,4 +183,4 @@ int serveCommand(int argc, char** argv, int first) {
   server.run();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

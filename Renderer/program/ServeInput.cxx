@@ -17,7 +17,7 @@
 #include <thread>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using nlohmann::json;
@@ -171,4 +171,4 @@ void ServeInput::handleLine(const std::string& line) {
   m_changed.notify_one();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -11,7 +11,7 @@
 #include <condition_variable>
 #include <mutex>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Writes one line of JSON to standard output; thread-safe. Ends the process if standard output is
 /// closed, since no client is left.
@@ -61,4 +61,4 @@ private:
   ServeChanges m_pending;   ///< not yet returned by next()
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

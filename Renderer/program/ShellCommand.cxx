@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace fenestra {
+namespace fenestra::core {
 
 std::string quoteForShell(const std::string& argument) {
   const char* const plain =
@@ -30,4 +30,4 @@ std::string formatExample(const nlohmann::ordered_json& example) {
   return "  " + toOneLine(command) + " --output image.png\n";
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Quotes an argument, if needed.
 std::string quoteForShell(const std::string& argument);
@@ -13,4 +13,4 @@ std::string quoteForShell(const std::string& argument);
 /// A render of one of an Inspection's `examples`, as an indented line that is not wrapped.
 std::string formatExample(const nlohmann::ordered_json& example);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <pugixml.hpp>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 void addText(pugi::xml_node parent, const char* name, const std::string& text) {
@@ -129,4 +129,4 @@ std::string formatReturnValues(const std::vector<double>& values) {
   return lines;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

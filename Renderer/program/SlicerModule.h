@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// A number that a render measured; Slicer shows it below the panel.
 struct ReturnValue {
@@ -29,4 +29,4 @@ std::string makeSlicerXml(const CommandSyntax& syntax);
 /// Lines "name = value", as Slicer expects; values[i] belongs to returnValues[i].
 std::string formatReturnValues(const std::vector<double>& values);
 
-} // namespace fenestra
+} // namespace fenestra::core

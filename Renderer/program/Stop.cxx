@@ -11,7 +11,7 @@
 #include <string_view>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 std::atomic<std::atomic<bool>*> stopFlag = nullptr;
@@ -116,4 +116,4 @@ DeferredStop::~DeferredStop() {
   stopFlag = nullptr;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline constexpr int stoppedStatus = 5;
 
@@ -33,4 +33,4 @@ public:
   DeferredStop& operator=(const DeferredStop&) = delete;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -22,7 +22,7 @@
 #include <map>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Renders all unfinished frames in sequence.
@@ -267,4 +267,4 @@ int turntableCommand(int argc, char** argv, int first) {
   return turntable.run();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

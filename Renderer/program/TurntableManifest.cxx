@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using nlohmann::json;
@@ -139,4 +139,4 @@ void TurntableManifest::finish(int frame, const std::optional<SurfaceChange>& ch
   m_manifest.finish(frame, files, change ? json{{changeKey, toJson(*change)}} : json(), outputs);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include "program/TurntableOptions.h"
 #include "scene/PreparedScene.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 class TurntableManifest {
 public:
@@ -52,4 +52,4 @@ private:
 /// JSON form in the manifest and in the statistics.
 nlohmann::ordered_json toJson(const SurfaceChange& change);
 
-} // namespace fenestra
+} // namespace fenestra::core

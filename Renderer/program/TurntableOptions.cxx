@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr const char* turntableGroup = "Turntable";
@@ -90,4 +90,4 @@ std::filesystem::path manifestPath(const std::filesystem::path& output, const Sh
   return path.replace_filename(output.stem().string() + part + ".turntable.json");
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

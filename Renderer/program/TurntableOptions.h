@@ -3,7 +3,7 @@
 
 #include "program/RenderOptions.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline constexpr int maxFrames = 10000; ///< file names have four digits
 
@@ -38,4 +38,4 @@ TurntableOptions makeTurntableOptions(const OptionValues& values, const RenderOp
 /// second of three shards, so that shards can render at the same time.
 std::filesystem::path manifestPath(const std::filesystem::path& output, const Shard& shard);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "base/Error.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Error of kind request, code usage. The parts form a line "subject: detail", like "--size:
 /// expected WIDTHxHEIGHT".
@@ -16,4 +16,4 @@ Error usageError(const Parts&... line) {
   return {ErrorKind::request, {ErrorCode::usage, text.substr(0, colon), text.substr(colon + 2)}};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

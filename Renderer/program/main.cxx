@@ -2,5 +2,5 @@
 #include "program/Process.h"
 
 int main(int argc, char** argv) {
-  fenestra::runProcess(argc, argv, fenestra::dispatch);
+  fenestra::core::runProcess(argc, argv, fenestra::core::dispatch);
 }

@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -82,4 +82,4 @@ OptionValues ReceivedFiles::localizePaths(const OptionValues& options,
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

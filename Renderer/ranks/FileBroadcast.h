@@ -6,7 +6,7 @@
 #include "program/Options.h"
 #include "ranks/Ranks.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Sends files to all other ranks, which construct ReceivedFiles meanwhile. Throws Error (input).
 void broadcastFiles(const std::vector<std::filesystem::path>& files, Ranks& ranks);
@@ -28,4 +28,4 @@ private:
   std::filesystem::path m_working; ///< rank 0's working folder
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <new>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Index of the first argument of a render. Throws Error (usage) for another command.
@@ -141,4 +141,4 @@ int dispatchRank(int argc, char** argv) {
   return 0;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

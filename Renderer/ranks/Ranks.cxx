@@ -11,7 +11,7 @@
 #include <mpi.h>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr int messageTag = 0; ///< of all messages
@@ -96,4 +96,4 @@ void BackoffPoller::wait() const {
       std::chrono::duration<double>(std::clamp(m_watch.seconds() / 8.0, minSeconds, maxSeconds)));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Words of a message; sender and receiver agree on their meaning.
 using RankMessage = std::vector<std::uint64_t>;
@@ -69,4 +69,4 @@ private:
   Stopwatch m_watch;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

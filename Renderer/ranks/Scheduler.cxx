@@ -13,7 +13,7 @@
 #include <new>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// First word of each message from rank 0.
@@ -294,4 +294,4 @@ void runWorker(Ranks& ranks, const SceneView& scene, const RenderSettings& setti
                [&tiles](RenderResult& result) { return tiles.next(result); });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

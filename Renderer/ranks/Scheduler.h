@@ -8,7 +8,7 @@
 
 #include <thread>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Rank 0: leases tiles to all other ranks.
 class Scheduler {
@@ -58,4 +58,4 @@ bool waitForStart(Ranks& ranks);
 /// Rank 0: makes all other ranks join a render.
 void startWorkers(Ranks& ranks);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -2,5 +2,5 @@
 #include "ranks/RankCommand.h"
 
 int main(int argc, char** argv) {
-  fenestra::runProcess(argc, argv, fenestra::dispatchRank);
+  fenestra::core::runProcess(argc, argv, fenestra::core::dispatchRank);
 }

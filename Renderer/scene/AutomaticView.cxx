@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <tbb/parallel_for.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double degree = pi / 180.0;
@@ -126,4 +126,4 @@ ViewDirection findBestView(const ViewScorer& scorer) {
   return {best, isNearSuperior ? Vec3::UnitY() : Vec3::UnitZ()};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

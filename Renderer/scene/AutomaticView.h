@@ -16,7 +16,7 @@
 #include "model/volume/Domain.h"
 #include "model/volume/Volume.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct ViewScore {
   double area = 0.0;            ///< projected area of the focus, mm²
@@ -65,4 +65,4 @@ struct ViewDirection {
 /// anterior if almost no ray hits the focus.
 ViewDirection findBestView(const ViewScorer& scorer);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <memory>
 #include <tuple>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Shared result of a stage; null: unused. Handles are equal if they share one result.
 template <typename Result>
@@ -61,4 +61,4 @@ template <auto function, typename Object, typename Result, typename... Arguments
 class CachedStage<function, Result (Object::*)(Arguments...) const>
     : public CachedStage<function, Result (*)(const Object&, Arguments...)> {};
 
-} // namespace fenestra
+} // namespace fenestra::core

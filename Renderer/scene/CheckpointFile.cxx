@@ -8,7 +8,7 @@
 #include <array>
 #include <cstring>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,4 +199,4 @@ void CheckpointFile::readPixels(Film& film) const {
     throw makeDamageError();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -20,7 +20,7 @@
 #include <fstream>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Encodes a checkpoint file. `metadata`: JSON object that identifies the request and its inputs.
 std::string encodeCheckpoint(const RenderResult& result, const Shard& shard,
@@ -66,4 +66,4 @@ private:
   Shard m_shard;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Mean reflected color of thick media with the albedo `albedoOf` of the scalars.
@@ -73,4 +73,4 @@ std::string summary(const FocusContrast& contrast) {
                 " (color-blind ", toString(contrast.contrast->colorBlind(), 3), ")", desaturated);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

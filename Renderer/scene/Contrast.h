@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Differences between the displayed colors of the focus and of its surroundings.
 struct Contrast {
@@ -50,4 +50,4 @@ FocusContrast measureFocusContrast(double saturation, const Mask& focus, const V
 /// "contrast of …": one line on contrast and saturation; empty without a contrast.
 std::string summary(const FocusContrast& contrast);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Segments of `patterns` that have voxels.
@@ -174,4 +174,4 @@ TransferFunction makeRelativeTransfer(const Volume& volume) {
           SurfaceShading::makeCoated(0.2, 0.45)};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Scalars of no tissue (0), cerebrospinal fluid (1), gray matter (2) and white matter (3): what
 /// 0 to 3 stand for in a transfer function with "scalars": "tissues".
@@ -57,4 +57,4 @@ TissueScale findTissues(const Volume& volume, const std::vector<double>& brain);
 /// medium without shading.
 TransferFunction makeRelativeTransfer(const Volume& volume);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 ViewDirection findView(const std::string& name, const ViewDirection* best) {
@@ -235,4 +235,4 @@ CameraPose adjustView(const ViewRequest& view, const CameraPose& scene) {
   return pose;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include "scene/AutomaticView.h"
 #include "scene/RenderRequest.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// True if a transfer function for `modality` is plausible for the volume: it is the modality that
 /// the file states; else CT requires a volume in Hounsfield units, and all other modalities one
@@ -51,4 +51,4 @@ CameraPose frameView(const ViewRequest& view, const Domain& framed, const Mask* 
 /// --angle belongs to the other projection.
 CameraPose adjustView(const ViewRequest& view, const CameraPose& scene);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -2,7 +2,7 @@
 
 #include "base/Error.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 double perSample(double sum, const PixelSums& pixel) {
@@ -85,4 +85,4 @@ ImagePlane makeImagePlane(const Camera& camera) {
           camera.pixelPitch() * camera.right(), -camera.pixelPitch() * camera.up()};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Names of channel groups, as in --layers.
 using LayerSet = std::set<std::string>;
@@ -33,4 +33,4 @@ Image makeFilteredImage(const FilteredImage& result, int width, int height);
 /// Position and size of the image in the world, on the plane through the target.
 ImagePlane makeImagePlane(const Camera& camera);
 
-} // namespace fenestra
+} // namespace fenestra::core

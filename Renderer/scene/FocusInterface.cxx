@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::int64_t shellDepth = 3; ///< voxels on either side of a face
@@ -218,4 +218,4 @@ std::vector<ComponentInterface> findInterfaces(const Mask& focus, const Volume& 
       volume.voxels);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Scalars of the three voxels on either side of each face, without those that the transfer
 /// function makes transparent. Subsampled to about ten thousand per side.
@@ -35,4 +35,4 @@ std::vector<ComponentInterface> findInterfaces(const Mask& focus, const Volume& 
                                                const LabelWeights& weights,
                                                const std::vector<bool>& isFocus);
 
-} // namespace fenestra
+} // namespace fenestra::core

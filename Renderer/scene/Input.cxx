@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <mutex>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 ScenePlan makePlan(const MrmlScene& scene, const InputChoice& choice, bool needsSegmentation) {
@@ -338,7 +338,7 @@ SceneTransfer Input::property(const std::string& name) const {
 
 std::vector<std::string> Input::propertyNames() const {
   const MrmlDocument* scene = document();
-  return scene ? fenestra::listPropertyNames(*scene) : std::vector<std::string>();
+  return scene ? fenestra::core::listPropertyNames(*scene) : std::vector<std::string>();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class MrmlDocument;
 struct DicomFolder;
@@ -124,4 +124,4 @@ private:
   std::shared_ptr<SharedState> m_state;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

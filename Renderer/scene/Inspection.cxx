@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::array voxelTypes = {"uint8", "int16", "uint16", "float"}; ///< by Voxels::index()
@@ -418,4 +418,4 @@ Inspection inspectInput(const RenderRequest& request, const Input& input) {
   return report;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// The report, one JSON object. Lengths are in mm, segment volumes in ml, positions in RAS, and
 /// colors are display-encoded in [0, 1]. Absent values are null. Nodes refer to each other by id.
@@ -53,4 +53,4 @@ void from_json(const nlohmann::ordered_json& json, Message& message);
 /// after the first 64 of a kind). Throws Error if the input is no scene, volume or segmentation.
 Inspection inspectInput(const RenderRequest& request, const Input& input);
 
-} // namespace fenestra
+} // namespace fenestra::core

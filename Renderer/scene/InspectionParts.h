@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 
 using Json = nlohmann::ordered_json; ///< a report, or part of it
 
@@ -58,4 +58,4 @@ void addExample(const std::string& volume, const Json& choice, const Json& segme
 
 Inspection inspectScene(const RenderRequest& request, const Input& input);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 #include "model/filtering/Lungs.h"
 #include "scene/Defaults.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 bool needsLungs(const RenderRequest& request) {
   return request.transfer == lungTransfer && request.focus.empty() && !request.clip.mode &&
@@ -29,4 +29,4 @@ FoundLungs findLungSegment(const VolumeHandle& read) {
   return found;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

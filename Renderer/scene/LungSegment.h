@@ -3,7 +3,7 @@
 
 #include "scene/Stages.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Name of the transfer function that shows the inside of lungs.
 inline constexpr const char* lungTransfer = "ct-lung";
@@ -21,4 +21,4 @@ bool needsLungs(const RenderRequest& request);
 
 FoundLungs findLungSegment(const VolumeHandle& volume);
 
-} // namespace fenestra
+} // namespace fenestra::core

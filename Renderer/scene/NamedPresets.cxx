@@ -12,7 +12,7 @@
 
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr const char* inlineTransfer = "transfer function"; ///< source of inline JSON
@@ -153,4 +153,4 @@ OrganPreset findOrganPreset(const std::string& name) {
   return parsePreset(readText(name), name);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// True if the option value is inline JSON (lights or a transfer function) instead of a name.
 inline bool isInlineJson(std::string_view value) {
@@ -72,4 +72,4 @@ bool isMaterialsFile(const std::string& name);
 /// Organ preset: built-in or from a file. Throws Error (input).
 OrganPreset findOrganPreset(const std::string& name);
 
-} // namespace fenestra
+} // namespace fenestra::core

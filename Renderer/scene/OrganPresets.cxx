@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Matches = std::vector<const OrganPreset*>;
@@ -89,4 +89,4 @@ const OrganPreset& findMatchingPreset(const std::vector<OrganPreset>& presets,
   return *matches.front();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Segments that match the preset's name patterns or codes, in the order of `segments`.
 std::vector<SegmentInfo> findFocusSegments(const SegmentPatterns& patterns,
@@ -30,4 +30,4 @@ const OrganPreset& findMatchingPreset(const std::vector<OrganPreset>& presets,
                                       const std::function<std::vector<SegmentInfo>()>& listNonEmpty,
                                       const std::function<bool(Modality)>& isSuitable);
 
-} // namespace fenestra
+} // namespace fenestra::core

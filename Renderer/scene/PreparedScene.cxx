@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 template <typename Item>
@@ -333,4 +333,4 @@ std::vector<std::string> PreparedScene::files() const {
   return files;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -11,7 +11,7 @@
 
 #include <tuple>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Wall-clock seconds per stage, for the statistics; 0: the result was shared.
 struct StageSeconds {
@@ -175,4 +175,4 @@ private:
   CachedStage<&marchFirstHits> m_features; ///< unused without the denoiser
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class ClipMode { none, plane, cutaway, surface, hole, ghost };
 
@@ -139,4 +139,4 @@ struct RenderRequest {
   }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <memory>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 bool isRoi(const MrmlNode& node) {
@@ -180,7 +180,7 @@ private:
 
   /// NODE and `more` members.
   Json nodeJson(const MrmlNode& node, const Json& more = Json::object()) const {
-    Json json = fenestra::nodeJson(node.id, node.name);
+    Json json = fenestra::core::nodeJson(node.id, node.name);
     for (const std::string& file : listStorageFiles(m_scene, node))
       json["files"].push_back({{"name", decodeUrl(file)}, {"there", m_scene.files.contains(file)}});
     json["transform"] = nullIfEmpty(idOrEmpty(document().follow(node, "transform")));
@@ -312,4 +312,4 @@ Inspection inspectScene(const RenderRequest& request, const Input& input) {
   return SceneInspector(request, input).inspect();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <span>
 #include <tuple>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Attribute of a segment that a rule matches, weakest first.
@@ -134,4 +134,4 @@ bool hasKnownMaterial(const Segmentation& segmentation, const std::vector<std::s
   });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct SegmentMaterial {
   SegmentMedium medium = {};
@@ -36,4 +36,4 @@ std::vector<SegmentMaterial> assignMaterials(const std::vector<SegmentInfo>& seg
 /// names or label values. Throws Error (input) for one that does not exist.
 bool hasKnownMaterial(const Segmentation& segmentation, const std::vector<std::string>& selectors);
 
-} // namespace fenestra
+} // namespace fenestra::core

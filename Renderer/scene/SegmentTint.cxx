@@ -10,7 +10,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t maxComponents = 256; ///< a component index is one byte
@@ -289,4 +289,4 @@ Mixture buildMixture(const TintPlan& plan, const Tint& tint, const TransferFunct
   return mixture;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Segments of one component and one priority, or the detected skin, which is no segment.
 struct TintPart {
@@ -75,4 +75,4 @@ bool isTintOnly(const TintPlan& plan);
 /// cosine of `transfer`, the volume's transfer function.
 Mixture buildMixture(const TintPlan& plan, const Tint& tint, const TransferFunction& transfer);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Removes voxels of a mask that are, along an axis, within `gap` mm or one voxel of `other`, a
@@ -81,4 +81,4 @@ Handle<SegmentsInput> separateSegments(const Handle<SegmentsInput>& input,
   return copy ? copy : input;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

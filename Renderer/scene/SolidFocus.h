@@ -4,7 +4,7 @@
 
 #include "scene/Stages.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Segments of the focus and their medians, if the transfer function makes each mostly transparent;
 /// else empty: of lungs and their vessels, the vessels are visible. `hasVoxels`: from
@@ -21,4 +21,4 @@ Handle<SegmentsInput> separateSegments(const Handle<SegmentsInput>& segments,
                                        const Handle<TransparentFocus>& transparent,
                                        const VolumeHandle& volume);
 
-} // namespace fenestra
+} // namespace fenestra::core

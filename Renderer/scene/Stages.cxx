@@ -9,7 +9,7 @@
 #include "scene/Defaults.h"
 #include "scene/OrganPresets.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< by Modality
@@ -437,4 +437,4 @@ FeatureBuffers marchFirstHits(const VolumeHandle& volume, const SettingsHandle& 
                           segments.mixture.get()});
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -15,7 +15,7 @@
 #include "scene/SegmentTint.h"
 #include "scene/TintContrast.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct FocusInput {
   std::optional<Mask> mask = {}; ///< empty: no focus requested
@@ -187,4 +187,4 @@ FeatureBuffers marchFirstHits(const VolumeHandle& volume, const SettingsHandle& 
                               const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
                               const Handle<MajorantGrid>& majorants);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -2,7 +2,7 @@
 
 #include "scene/Defaults.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Union of all segments with voxels; nullopt: there are none.
@@ -47,4 +47,4 @@ VolumeInput removeTable(const VolumeHandle& read, const Handle<FoundTable>& foun
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

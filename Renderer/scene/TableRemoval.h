@@ -4,7 +4,7 @@
 #include "model/filtering/ScannerTable.h"
 #include "scene/Stages.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct FoundTable {
   std::optional<ScannerTable> table = {};
@@ -20,4 +20,4 @@ VolumeInput removeTable(const VolumeHandle& volume, const Handle<FoundTable>& ta
                         const Handle<SegmentsInput>& segments,
                         const Handle<std::vector<bool>>& hasVoxels);
 
-} // namespace fenestra
+} // namespace fenestra::core

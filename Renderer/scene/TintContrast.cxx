@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 bool isInGamut(const Rgb& color) {
@@ -277,4 +277,4 @@ Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustme
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Change of the reflected colors of thick media, in CIELAB.
 struct ColorAdjustment {
@@ -87,4 +87,4 @@ std::string summary(const TintContrast& contrast);
 Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustment& adjustment,
                      const TransferFunction& transfer);
 
-} // namespace fenestra
+} // namespace fenestra::core

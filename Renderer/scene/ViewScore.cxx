@@ -4,7 +4,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Point n of the R2 sequence, which fills the unit square evenly without alignment to its axes
@@ -172,4 +172,4 @@ ViewScore ViewScorer::operator()(const Vec3& fromTarget, std::size_t rays) const
   return score;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -11,7 +11,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Compares with physical memory, since Linux grants more and kills the process when it is used.
@@ -225,4 +225,4 @@ std::string describe(const SmoothingReport& report) {
   return line.str();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 #include "model/filtering/SmoothingRequest.h"
 #include "scene/Stages.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// What was done to the volume.
 struct SmoothingReport {
@@ -58,4 +58,4 @@ std::optional<double> findOnset(const TransferFunction& transfer);
 /// smoothed".
 std::string describe(const SmoothingReport& report);
 
-} // namespace fenestra
+} // namespace fenestra::core

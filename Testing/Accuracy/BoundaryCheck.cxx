@@ -24,7 +24,7 @@
 #include <exception>
 #include <iostream>
 
-namespace fenestra::accuracy {
+namespace fenestra::core::accuracy {
 namespace {
 
 /// Worst values over several views, for the summary.
@@ -120,12 +120,12 @@ void sweepAll(int size, int views) {
 }
 
 } // namespace
-} // namespace fenestra::accuracy
+} // namespace fenestra::core::accuracy
 
 int main(int argc, char** argv) {
   try {
-    fenestra::accuracy::sweepAll(argc > 1 ? std::atoi(argv[1]) : 512,
-                                 argc > 2 ? std::atoi(argv[2]) : 12);
+    fenestra::core::accuracy::sweepAll(argc > 1 ? std::atoi(argv[1]) : 512,
+                                       argc > 2 ? std::atoi(argv[2]) : 12);
     return 0;
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';

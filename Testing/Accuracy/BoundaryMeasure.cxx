@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fenestra::accuracy {
+namespace fenestra::core::accuracy {
 
 namespace {
 
@@ -218,4 +218,4 @@ ImageMatch FocusView::match(const std::vector<float>& depths, const Surface& sur
   return result;
 }
 
-} // namespace fenestra::accuracy
+} // namespace fenestra::core::accuracy

@@ -18,7 +18,7 @@
 
 #include <functional>
 
-namespace fenestra::accuracy {
+namespace fenestra::core::accuracy {
 
 constexpr double jumpDepth = 2.0;       ///< mm
 constexpr double wideGap = 0.2;         ///< mm
@@ -95,4 +95,4 @@ private:
   std::vector<DepthRange> m_outlineDepths; ///< near each ray; least > greatest: no outline
 };
 
-} // namespace fenestra::accuracy
+} // namespace fenestra::core::accuracy

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-using namespace fenestra;
-using namespace fenestra::accuracy;
+using namespace fenestra::core;
+using namespace fenestra::core::accuracy;
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace fenestra::accuracy {
+namespace fenestra::core::accuracy {
 
 namespace {
 
@@ -195,4 +195,4 @@ double FocusField::findFirstHit(const Vec3& origin, const Vec3& direction) const
   return infinity;
 }
 
-} // namespace fenestra::accuracy
+} // namespace fenestra::core::accuracy

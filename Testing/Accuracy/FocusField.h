@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra::accuracy {
+namespace fenestra::core::accuracy {
 
 /// Indicator of the focus on the volume's grid, x fastest: 1 in the focus, 0 outside. With smoothed
 /// labels, it is the weight of the focus, 0 to 255.
@@ -51,4 +51,4 @@ private:
   double m_radius = 0.0, m_longestEdge = 0.0;
 };
 
-} // namespace fenestra::accuracy
+} // namespace fenestra::core::accuracy

@@ -13,7 +13,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace fenestra::accuracy {
+namespace fenestra::core::accuracy {
 
 namespace {
 
@@ -140,4 +140,4 @@ std::vector<float> renderDepths(const Subject& subject, const View& view,
   return *readImage(image).find("Z");
 }
 
-} // namespace fenestra::accuracy
+} // namespace fenestra::core::accuracy

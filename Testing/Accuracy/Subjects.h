@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-namespace fenestra::accuracy {
+namespace fenestra::core::accuracy {
 
 struct Subject {
   std::string name;
@@ -39,4 +39,4 @@ Surface makeSurface(const Subject& subject, const View& view, const std::string&
 std::vector<float> renderDepths(const Subject& subject, const View& view,
                                 const std::string& boundary, const std::filesystem::path& folder);
 
-} // namespace fenestra::accuracy
+} // namespace fenestra::core::accuracy

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra::accuracy {
+namespace fenestra::core::accuracy {
 
 /// View of a square image. Raster positions are in pixels; (0, 0) is the top left corner.
 struct View {
@@ -33,4 +33,4 @@ struct View {
   }
 };
 
-} // namespace fenestra::accuracy
+} // namespace fenestra::core::accuracy

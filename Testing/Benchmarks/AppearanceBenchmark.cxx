@@ -18,7 +18,7 @@
 #include <iomanip>
 #include <iostream>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 constexpr const char* group = "Benchmark";
@@ -212,9 +212,9 @@ int benchmark(int argc, char** argv) {
 }
 
 } // namespace
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks
 
 int main(int argc, char** argv) {
-  using namespace fenestra::benchmarks;
+  using namespace fenestra::core::benchmarks;
   return runBenchmark("AppearanceBenchmark", benchmark, argc, argv);
 }

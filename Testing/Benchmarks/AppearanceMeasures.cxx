@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 constexpr std::size_t leastCount = 100; // pixels of a statistic
@@ -348,4 +348,4 @@ std::optional<EdgeContrast> measureContrast(const Raster<Rgb>& display, const Pi
                       difference(ColorVision::deutan), std::abs(toLab(a).L - toLab(b).L)};
 }
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

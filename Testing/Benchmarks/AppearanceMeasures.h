@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 
 /// One value per pixel, row 0 at the top.
 template <typename Value>
@@ -102,4 +102,4 @@ struct EdgeContrast {
 std::optional<EdgeContrast> measureContrast(const Raster<Rgb>& display, const PixelMask& focus,
                                             const PixelMask& covered);
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 constexpr int width = 100;
@@ -163,4 +163,4 @@ TEST(EdgeContrastMeasure, ComparesMeanColorsOnBothSides) {
 }
 
 } // namespace
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

@@ -7,7 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 
 /// Part of a ray inside the volume; distances start at the entry point.
 struct Crossing {
@@ -179,4 +179,4 @@ Film traceImage(const SceneView& scene, const RenderSettings& settings, MakeTrac
   return film;
 }
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

@@ -14,7 +14,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 constexpr const char* samples = FENESTRA_SAMPLES; // small phantoms
@@ -210,4 +210,4 @@ TEST_F(CompleteRun, PrintsARowForEverySceneAndMode) {
 }
 
 } // namespace
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

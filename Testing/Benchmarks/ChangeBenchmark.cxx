@@ -15,7 +15,7 @@
 #include <iostream>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 struct Change {
@@ -93,16 +93,17 @@ void measure(const std::string& other, const RenderOptions& options) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core
 
 int main(int argc, char** argv) {
   try {
     if (argc < 3)
-      throw fenestra::usageError("usage: ChangeBenchmark FOCUS ARGUMENTS...");
-    if (const auto values = fenestra::parseCommandLine(fenestra::renderSyntax, argc, argv, 2))
-      fenestra::measure(argv[1], fenestra::makeRenderOptions(*values));
+      throw fenestra::core::usageError("usage: ChangeBenchmark FOCUS ARGUMENTS...");
+    if (const auto values =
+            fenestra::core::parseCommandLine(fenestra::core::renderSyntax, argc, argv, 2))
+      fenestra::core::measure(argv[1], fenestra::core::makeRenderOptions(*values));
     return 0;
-  } catch (const fenestra::Error& error) {
+  } catch (const fenestra::core::Error& error) {
     std::cerr << "ChangeBenchmark: " << error.what() << '\n';
     return exitStatus(error.kind());
   }

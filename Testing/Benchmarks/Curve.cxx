@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 /// Measurements from one render.
@@ -105,4 +105,4 @@ std::optional<Efficiency> findEfficiency(const std::vector<Point>& curve, double
   return nearest;
 }
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 
 struct CurveSettings {
   double budget = 60.0;        ///< CPU seconds per curve, over all seeds
@@ -42,4 +42,4 @@ struct Efficiency {
 };
 std::optional<Efficiency> findEfficiency(const std::vector<Point>& curve, double relMse);
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

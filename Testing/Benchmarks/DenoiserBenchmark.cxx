@@ -14,7 +14,7 @@
 #include <iomanip>
 #include <iostream>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 constexpr const char* group = "Benchmark";
@@ -143,9 +143,9 @@ int benchmark(int argc, char** argv) {
 }
 
 } // namespace
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks
 
 int main(int argc, char** argv) {
-  using namespace fenestra::benchmarks;
+  using namespace fenestra::core::benchmarks;
   return runBenchmark("DenoiserBenchmark", benchmark, argc, argv);
 }

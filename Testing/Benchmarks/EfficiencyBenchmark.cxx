@@ -11,7 +11,7 @@
 #include <iomanip>
 #include <iostream>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 constexpr const char* group = "Benchmark";
@@ -120,9 +120,9 @@ int benchmark(int argc, char** argv) {
 }
 
 } // namespace
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks
 
 int main(int argc, char** argv) {
-  using namespace fenestra::benchmarks;
+  using namespace fenestra::core::benchmarks;
   return runBenchmark("EfficiencyBenchmark", benchmark, argc, argv);
 }

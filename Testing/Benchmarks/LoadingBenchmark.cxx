@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -118,16 +118,16 @@ void measure(const std::string& self, std::int64_t edge, int runs) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core
 
 int main(int count, char** arguments) {
   const std::vector<std::string> words(arguments, arguments + count);
   try {
     if (words.size() == 3 && words[1] == "--bare")
-      fenestra::readWithItk(words[2]);
+      fenestra::core::readWithItk(words[2]);
     else
-      fenestra::measure(words[0], words.size() > 1 ? std::stoi(words[1]) : 512,
-                        words.size() > 2 ? std::stoi(words[2]) : 3);
+      fenestra::core::measure(words[0], words.size() > 1 ? std::stoi(words[1]) : 512,
+                              words.size() > 2 ? std::stoi(words[2]) : 3);
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

@@ -12,7 +12,7 @@
 
 #include <iostream>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 constexpr int imageSize = 512;
@@ -176,10 +176,10 @@ SceneCase chooseScene() {
 }
 
 } // namespace
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks
 
 int main(int argc, char** argv) {
-  using namespace fenestra::benchmarks;
+  using namespace fenestra::core::benchmarks;
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv))
     return 2;

@@ -3,7 +3,7 @@
 #include "Baselines.h"
 #include "program/UsageError.h"
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 Film renderByFenestra(const SceneView& scene, const RenderSettings& settings) {
@@ -67,4 +67,4 @@ const Mode& findMode(const std::string& name) {
   throw usageError("--modes: '" + name + "' is unknown; expected some of " + known);
 }
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 
 struct Mode {
   const char* name;
@@ -20,4 +20,4 @@ std::span<const Mode> modes();
 /// Throws Error (usage) for an unknown name.
 const Mode& findMode(const std::string& name);
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct Cost {
   double seconds = infinity, cpuSeconds = infinity; ///< of the processes
@@ -52,4 +52,4 @@ inline Cost measureCost(const std::vector<std::string>& command) {
           1024e-6 * static_cast<double>(usage.ru_maxrss)};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

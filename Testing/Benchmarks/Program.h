@@ -9,7 +9,7 @@
 #include <exception>
 #include <iostream>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 
 /// User and system time that this process has used.
 inline double cpuSeconds() {
@@ -36,4 +36,4 @@ inline int runBenchmark(const char* name, int (*benchmark)(int, char**), int arg
   }
 }
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

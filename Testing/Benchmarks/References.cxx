@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 /// First seed of references, above those of measured renders.
@@ -171,4 +171,4 @@ Image toImage(const Film& film, const PreparedScene& scene) {
   return makeImage(film, scene.camera(), scene.clip(), {"color", "error", "samples"});
 }
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

@@ -6,7 +6,7 @@
 #include "image/Image.h"
 #include "scene/PreparedScene.h"
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 
 struct ReferenceSettings {
   std::filesystem::path folder; ///< cache of references
@@ -33,4 +33,4 @@ Reference getOrRenderReference(const SceneCase& sceneCase, const PreparedScene& 
 /// Image with R, G, B and their standard errors.
 Image toImage(const Film& film, const PreparedScene& scene);
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

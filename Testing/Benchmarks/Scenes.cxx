@@ -9,7 +9,7 @@
 #include <map>
 #include <sstream>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 using Arguments = std::vector<std::string>;
@@ -142,4 +142,4 @@ std::vector<SceneCase> readScenes(const std::filesystem::path& table, const Fold
   return Table(table, folders).read();
 }
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 
 /// Options of a command line of `fenestra`. Throws Error (usage), also if it renders nothing.
 RenderOptions parseRenderOptions(const std::vector<std::string>& arguments);
@@ -42,4 +42,4 @@ struct SceneCase {
 /// Throws Error (input) for an invalid table.
 std::vector<SceneCase> readScenes(const std::filesystem::path& table, const Folders& folders);
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

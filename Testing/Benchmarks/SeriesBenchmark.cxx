@@ -18,7 +18,7 @@
 #include <cstdio>
 #include <iostream>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -110,12 +110,12 @@ int runMain(const std::vector<std::string>& words) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core
 
 int main(int count, char** arguments) {
-  fenestra::serveSandbox(count, arguments);
+  fenestra::core::serveSandbox(count, arguments);
   try {
-    return fenestra::runMain({arguments, arguments + count});
+    return fenestra::core::runMain({arguments, arguments + count});
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return 1;

@@ -19,7 +19,7 @@
 #include <iostream>
 #include <random>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Values = std::vector<float>;
@@ -264,10 +264,10 @@ void measure(const Volume& volume, const Field3& labels, const std::vector<doubl
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core
 
 int main(int argc, char** argv) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   const std::filesystem::path folder = std::filesystem::path(FENESTRA_DATA) / "torso_ct_ccth_a01";
   if (!std::filesystem::exists(folder)) {
     std::cerr << "SmoothingBenchmark: no data at " << folder << '\n';

@@ -8,7 +8,7 @@
 #include <array>
 #include <functional>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 /// The volume at world points.
@@ -256,4 +256,4 @@ std::optional<double> measureForeignSurface(const Volume& volume, const Mask& fo
   });
 }
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

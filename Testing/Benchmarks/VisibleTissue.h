@@ -7,7 +7,7 @@
 #include "scene/Input.h"
 #include "scene/PreparedScene.h"
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 
 /// Where camera rays are expected to collide first.
 struct VisibleSurface {
@@ -38,4 +38,4 @@ TissueRegions findTissueRegions(const PreparedScene& scene, const VisibleSurface
 /// 60 HU, so that the focus is not one tissue.
 std::optional<double> measureForeignSurface(const Volume& volume, const Mask& focus);
 
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

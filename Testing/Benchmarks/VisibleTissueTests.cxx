@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::benchmarks {
+namespace fenestra::core::benchmarks {
 namespace {
 
 constexpr double radius = 20.0, noise = 10.0; // mm, HU
@@ -61,4 +61,4 @@ TEST(ForeignSurface, NeedsOneTissueAndEnoughVoxels) {
 }
 
 } // namespace
-} // namespace fenestra::benchmarks
+} // namespace fenestra::core::benchmarks

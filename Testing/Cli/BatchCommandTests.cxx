@@ -8,7 +8,7 @@
 #include <csignal>
 #include <sstream>
 
-namespace fenestra::BatchCommandTests {
+namespace fenestra::core::BatchCommandTests {
 namespace {
 
 const Arguments quick = {"--size", "16x16", "--samples", "2"};
@@ -284,4 +284,4 @@ TEST_F(BatchCommand, RejectsInvalidTables) {
 }
 
 } // namespace
-} // namespace fenestra::BatchCommandTests
+} // namespace fenestra::core::BatchCommandTests

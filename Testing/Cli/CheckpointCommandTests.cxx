@@ -5,7 +5,7 @@
 
 #include <csignal>
 
-namespace fenestra::CheckpointCommandTests {
+namespace fenestra::core::CheckpointCommandTests {
 namespace {
 
 class CheckpointCommand : public SmallScene {
@@ -169,4 +169,4 @@ TEST_F(CheckpointCommand, UnwritableCheckpointGivesOneWarning) {
 }
 
 } // namespace
-} // namespace fenestra::CheckpointCommandTests
+} // namespace fenestra::core::CheckpointCommandTests

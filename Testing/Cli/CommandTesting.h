@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct NrrdText {
   std::string sizes = "4 4 4";
@@ -161,4 +161,4 @@ inline void expectErrors(const std::vector<ExpectedError>& errors,
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-namespace fenestra::CompatibilityCommandTests {
+namespace fenestra::core::CompatibilityCommandTests {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ TEST_F(Compatibility, FormerValuesOfOptionsAreAccepted) {
 }
 
 } // namespace
-} // namespace fenestra::CompatibilityCommandTests
+} // namespace fenestra::core::CompatibilityCommandTests

@@ -3,7 +3,7 @@
 
 #include "CommandTesting.h"
 
-namespace fenestra::DataCommandTests {
+namespace fenestra::core::DataCommandTests {
 namespace {
 
 const std::filesystem::path data = FENESTRA_DATA;
@@ -202,4 +202,4 @@ INSTANTIATE_TEST_SUITE_P(All, RealFiles, ::testing::ValuesIn(expectations()),
                          });
 
 } // namespace
-} // namespace fenestra::DataCommandTests
+} // namespace fenestra::core::DataCommandTests

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <regex>
 
-namespace fenestra::DescribeCommandTests {
+namespace fenestra::core::DescribeCommandTests {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -135,4 +135,4 @@ TEST_F(DescribeCommand, UnknownKindIsRejected) {
 }
 
 } // namespace
-} // namespace fenestra::DescribeCommandTests
+} // namespace fenestra::core::DescribeCommandTests

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <map>
 
-namespace fenestra::FilesCommandTests {
+namespace fenestra::core::FilesCommandTests {
 namespace {
 
 class FilesCommand : public SmallScene {};
@@ -309,4 +309,4 @@ TEST_F(FilesCommand, PhantomRejectsBadKindSizeOrFolder) {
 }
 
 } // namespace
-} // namespace fenestra::FilesCommandTests
+} // namespace fenestra::core::FilesCommandTests

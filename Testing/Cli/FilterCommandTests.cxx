@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace fenestra::FilterCommandTests {
+namespace fenestra::core::FilterCommandTests {
 namespace {
 
 /// Renders of the knee with 48x48 pixels.
@@ -140,4 +140,4 @@ TEST_F(FilterCommand, ContradictionsAreRejected) {
 }
 
 } // namespace
-} // namespace fenestra::FilterCommandTests
+} // namespace fenestra::core::FilterCommandTests

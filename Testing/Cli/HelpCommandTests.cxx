@@ -5,7 +5,7 @@
 #include <regex>
 #include <sstream>
 
-namespace fenestra::HelpCommandTests {
+namespace fenestra::core::HelpCommandTests {
 namespace {
 
 class HelpCommand : public SmallScene {
@@ -123,4 +123,4 @@ TEST_F(HelpCommand, NothingIsHelpAfterTwoDashes) {
 }
 
 } // namespace
-} // namespace fenestra::HelpCommandTests
+} // namespace fenestra::core::HelpCommandTests

@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Expects equal channels and, if the headers have one, an equal sample count.
 inline void expectSameImage(const std::filesystem::path& a, const std::filesystem::path& b) {
@@ -21,4 +21,4 @@ inline void expectSameImage(const std::filesystem::path& a, const std::filesyste
   EXPECT_EQ(samples(one), samples(other));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

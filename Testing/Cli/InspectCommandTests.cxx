@@ -2,7 +2,7 @@
 
 #include "InspectTesting.h"
 
-namespace fenestra::InspectCommandTests {
+namespace fenestra::core::InspectCommandTests {
 namespace {
 
 TEST_F(InspectCommand, DescribesVolume) {
@@ -279,4 +279,4 @@ TEST_F(InspectCommand, DescribesSceneWrittenBySlicer) {
 }
 
 } // namespace
-} // namespace fenestra::InspectCommandTests
+} // namespace fenestra::core::InspectCommandTests

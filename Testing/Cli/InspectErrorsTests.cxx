@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-namespace fenestra::InspectErrorsTests {
+namespace fenestra::core::InspectErrorsTests {
 namespace {
 
 std::vector<std::string> splitLines(const std::string& text) {
@@ -159,4 +159,4 @@ TEST_F(InspectCommand, RejectsInputThatIsNotAVolumeOrScene) {
 }
 
 } // namespace
-} // namespace fenestra::InspectErrorsTests
+} // namespace fenestra::core::InspectErrorsTests

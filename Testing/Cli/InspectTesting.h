@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace fenestra {
+namespace fenestra::core {
 
 using Json = nlohmann::json;
 
@@ -69,4 +69,4 @@ protected:
   mutable std::string text; ///< plain output of the last inspection
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

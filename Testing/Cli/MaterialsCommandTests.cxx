@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace fenestra::MaterialsCommandTests {
+namespace fenestra::core::MaterialsCommandTests {
 namespace {
 
 const std::filesystem::path data = FENESTRA_DATA;
@@ -354,4 +354,4 @@ TEST_F(MaterialsCommand, ServeAcceptsAListOfChanges) {
 }
 
 } // namespace
-} // namespace fenestra::MaterialsCommandTests
+} // namespace fenestra::core::MaterialsCommandTests

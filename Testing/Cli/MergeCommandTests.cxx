@@ -7,7 +7,7 @@
 #include <csignal>
 #include <random>
 
-namespace fenestra::MergeCommandTests {
+namespace fenestra::core::MergeCommandTests {
 namespace {
 
 class MergeCommand : public SmallScene {
@@ -181,4 +181,4 @@ TEST_F(MergeCommand, ShardsRejectOptionsOfTheCompleteImage) {
 }
 
 } // namespace
-} // namespace fenestra::MergeCommandTests
+} // namespace fenestra::core::MergeCommandTests

@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-namespace fenestra::MessagesCommandTests {
+namespace fenestra::core::MessagesCommandTests {
 namespace {
 
 std::size_t countLines(const std::string& text) {
@@ -128,4 +128,4 @@ TEST_F(MessagesCommand, BarAndLinesNeverInterleave) {
 }
 
 } // namespace
-} // namespace fenestra::MessagesCommandTests
+} // namespace fenestra::core::MessagesCommandTests

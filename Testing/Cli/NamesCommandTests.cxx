@@ -8,7 +8,7 @@
 
 #include <map>
 
-namespace fenestra::NamesCommandTests {
+namespace fenestra::core::NamesCommandTests {
 namespace {
 
 /// One-word names of render's options that are not just the canonical ones without "-".
@@ -291,4 +291,4 @@ TEST_F(NamesCommand, RangesInErrorsArePlainNumbers) {
 }
 
 } // namespace
-} // namespace fenestra::NamesCommandTests
+} // namespace fenestra::core::NamesCommandTests

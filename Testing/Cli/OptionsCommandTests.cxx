@@ -5,7 +5,7 @@
 #include <regex>
 #include <unistd.h>
 
-namespace fenestra::OptionsCommandTests {
+namespace fenestra::core::OptionsCommandTests {
 namespace {
 
 class OptionsCommand : public SmallScene {
@@ -210,4 +210,4 @@ TEST_F(OptionsCommand, VersionIsTheFirstLineForEveryCommand) {
 }
 
 } // namespace
-} // namespace fenestra::OptionsCommandTests
+} // namespace fenestra::core::OptionsCommandTests

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <sstream>
 
-namespace fenestra::PresetsCommandTests {
+namespace fenestra::core::PresetsCommandTests {
 namespace {
 
 /// Runs `fenestra knee.nrrd …` in the knee's folder, with 16x16 pixels and 2 samples per pixel.
@@ -306,4 +306,4 @@ TEST(PresetsCommand, TransferFindsVolumePropertyOfTheSceneByName) {
 }
 
 } // namespace
-} // namespace fenestra::PresetsCommandTests
+} // namespace fenestra::core::PresetsCommandTests

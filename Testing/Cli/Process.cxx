@@ -20,7 +20,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Content of a file. Opens it again, since reading through `file` would move the child's position.
@@ -239,4 +239,4 @@ Outcome run(const Arguments& arguments, const std::filesystem::path& folder) {
   return Process(arguments, folder).wait();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 using Arguments = std::vector<std::string>;
 
@@ -78,4 +78,4 @@ private:
 /// Runs a process until it ends.
 Outcome run(const Arguments& arguments, const std::filesystem::path& folder);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 
 #include <regex>
 
-namespace fenestra::ProgressCommandTests {
+namespace fenestra::core::ProgressCommandTests {
 namespace {
 
 class ProgressCommand : public SmallScene {
@@ -89,4 +89,4 @@ TEST_F(ProgressCommand, NoProgressIsWrittenWithoutATerminal) {
 }
 
 } // namespace
-} // namespace fenestra::ProgressCommandTests
+} // namespace fenestra::core::ProgressCommandTests

@@ -7,7 +7,7 @@
 
 #include <array>
 
-namespace fenestra::RenderCommandTests {
+namespace fenestra::core::RenderCommandTests {
 namespace {
 
 class RenderCommand : public SmallScene {
@@ -408,4 +408,4 @@ TEST_F(RenderCommand, DefaultOutputReplacesOnlyImagesOfFenestra) {
 }
 
 } // namespace
-} // namespace fenestra::RenderCommandTests
+} // namespace fenestra::core::RenderCommandTests

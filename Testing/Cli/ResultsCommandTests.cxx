@@ -7,7 +7,7 @@
 
 #include <sys/stat.h>
 
-namespace fenestra::ResultsCommandTests {
+namespace fenestra::core::ResultsCommandTests {
 namespace {
 
 class ResultsCommand : public SmallScene {
@@ -201,4 +201,4 @@ TEST_F(ResultsCommand, RestartRejectsAFileThatIsNotAManifest) {
 }
 
 } // namespace
-} // namespace fenestra::ResultsCommandTests
+} // namespace fenestra::core::ResultsCommandTests

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <sstream>
 
-namespace fenestra::ScenesCommandTests {
+namespace fenestra::core::ScenesCommandTests {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -429,4 +429,4 @@ INSTANTIATE_TEST_SUITE_P(Real, SlicerScenes,
                          ::testing::Values("chest.mrb", "chest_transformed_cropped.mrb"));
 
 } // namespace
-} // namespace fenestra::ScenesCommandTests
+} // namespace fenestra::core::ScenesCommandTests

@@ -8,7 +8,7 @@
 
 #include <csignal>
 
-namespace fenestra::ServeCommandTests {
+namespace fenestra::core::ServeCommandTests {
 namespace {
 
 using nlohmann::json;
@@ -259,4 +259,4 @@ TEST_F(ServeCommand, MissingInputStatsAndSurfaceOptionsAreRejected) {
 }
 
 } // namespace
-} // namespace fenestra::ServeCommandTests
+} // namespace fenestra::core::ServeCommandTests

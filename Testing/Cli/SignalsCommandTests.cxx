@@ -12,7 +12,7 @@
 #include <cstring>
 #include <thread>
 
-namespace fenestra::SignalsCommandTests {
+namespace fenestra::core::SignalsCommandTests {
 namespace {
 
 /// Limit of the processor time in seconds from the signal to the end: about 0.1 is needed, more by
@@ -175,4 +175,4 @@ TEST_F(BrokenPipe, EndsTheRenderWithStatus4) {
 }
 
 } // namespace
-} // namespace fenestra::SignalsCommandTests
+} // namespace fenestra::core::SignalsCommandTests

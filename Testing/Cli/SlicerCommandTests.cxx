@@ -10,7 +10,7 @@
 #include <map>
 #include <regex>
 
-namespace fenestra::SlicerCommandTests {
+namespace fenestra::core::SlicerCommandTests {
 namespace {
 
 using Names = std::set<std::string>;
@@ -269,4 +269,4 @@ TEST_F(SlicerCommand, EchoPrintsTheParsedValues) {
 }
 
 } // namespace
-} // namespace fenestra::SlicerCommandTests
+} // namespace fenestra::core::SlicerCommandTests

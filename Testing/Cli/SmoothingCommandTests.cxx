@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace fenestra::SmoothingCommandTests {
+namespace fenestra::core::SmoothingCommandTests {
 namespace {
 
 /// Folder with a noisy CT of a box in air, and its values as those of an MR.
@@ -273,4 +273,4 @@ TEST_F(SmoothingCommand, RejectsOtherValues) {
 }
 
 } // namespace
-} // namespace fenestra::SmoothingCommandTests
+} // namespace fenestra::core::SmoothingCommandTests

@@ -3,7 +3,7 @@
 #include "InspectTesting.h"
 #include "TiffPages.h"
 
-namespace fenestra::StackCommandTests {
+namespace fenestra::core::StackCommandTests {
 namespace {
 
 class StackCommand : public InspectCommand {
@@ -72,4 +72,4 @@ TEST_F(StackCommand, RejectsInvalidSpacings) {
 }
 
 } // namespace
-} // namespace fenestra::StackCommandTests
+} // namespace fenestra::core::StackCommandTests

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <sstream>
 
-namespace fenestra::SurfaceCommandTests {
+namespace fenestra::core::SurfaceCommandTests {
 namespace {
 
 const Arguments knee = {"knee/knee.nrrd", "--segmentation",   "knee/knee.seg.nrrd",
@@ -144,4 +144,4 @@ TEST(SurfaceCommandLine, RejectsUnwritableFilesAndRendersWithoutSurface) {
 }
 
 } // namespace
-} // namespace fenestra::SurfaceCommandTests
+} // namespace fenestra::core::SurfaceCommandTests

@@ -14,7 +14,7 @@
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 
-namespace fenestra::ThreadsCommandTests {
+namespace fenestra::core::ThreadsCommandTests {
 namespace {
 
 using ThreadsCommand = SmallScene;
@@ -73,4 +73,4 @@ TEST_F(ThreadsCommand, FailedThreadStartIsAnErrorAndOneThreadRenders) {
 }
 
 } // namespace
-} // namespace fenestra::ThreadsCommandTests
+} // namespace fenestra::core::ThreadsCommandTests

@@ -10,7 +10,7 @@
 #include <csignal>
 #include <sstream>
 
-namespace fenestra::TurntableCommandTests {
+namespace fenestra::core::TurntableCommandTests {
 namespace {
 
 const Arguments focus = {"--segmentation", "segments.seg.nrrd", "--focus", "A"};
@@ -365,4 +365,4 @@ TEST_F(TurntableCommand, ShardsRenderTheirFramesIntoOneFolder) {
 }
 
 } // namespace
-} // namespace fenestra::TurntableCommandTests
+} // namespace fenestra::core::TurntableCommandTests

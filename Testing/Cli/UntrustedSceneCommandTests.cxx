@@ -6,7 +6,7 @@
 
 #include <zip.h>
 
-namespace fenestra::UntrustedSceneCommandTests {
+namespace fenestra::core::UntrustedSceneCommandTests {
 namespace {
 
 const std::string scene = R"(<MRML version="Slicer 5.6.2 32448">
@@ -150,4 +150,4 @@ TEST_F(UntrustedSceneCommand, ArchiveReferencesOnlyItsOwnFiles) {
 }
 
 } // namespace
-} // namespace fenestra::UntrustedSceneCommandTests
+} // namespace fenestra::core::UntrustedSceneCommandTests

@@ -14,7 +14,7 @@
 #include <sys/user.h>
 #include <unistd.h>
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 namespace {
 
 /// System call; `argument` is the index, from 0, of its path or descriptor.
@@ -168,4 +168,4 @@ std::string describeCall(pid_t thread, const user_regs_struct& registers) {
   }
 }
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

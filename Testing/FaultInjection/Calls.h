@@ -9,7 +9,7 @@
 struct user_regs_struct;
 struct sock_filter;
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 
 /// seccomp filter that returns RET_TRACE for calls on files, including mmap of a file, and allows
 /// all other calls.
@@ -21,4 +21,4 @@ bool isChange(const user_regs_struct& registers);
 /// Description such as "openat /dev/shm/x/o.png" of the call that `thread` is about to execute.
 std::string describeCall(pid_t thread, const user_regs_struct& registers);
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

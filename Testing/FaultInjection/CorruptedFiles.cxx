@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 namespace {
 
 namespace fs = std::filesystem;
@@ -261,11 +261,11 @@ int runCorruptedFiles(int count, char** arguments) {
 }
 
 } // namespace
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults
 
 int main(int count, char** arguments) {
   try {
-    return fenestra::faults::runCorruptedFiles(count, arguments);
+    return fenestra::core::faults::runCorruptedFiles(count, arguments);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "CorruptedFiles: %s\n", error.what());
     return 1;

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 namespace {
 
 /// Part of the bytes.
@@ -208,4 +208,4 @@ std::string corrupt(std::string bytes, std::mt19937_64& random) {
   return bytes;
 }
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

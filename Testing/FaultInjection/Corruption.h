@@ -4,9 +4,9 @@
 #include <random>
 #include <string>
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 
 /// Corrupted bytes. The same bytes and random state give the same result on all machines.
 std::string corrupt(std::string bytes, std::mt19937_64& random);
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

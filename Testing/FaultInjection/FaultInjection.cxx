@@ -21,7 +21,7 @@
 #include <thread>
 #include <utility>
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 namespace {
 
 constexpr int skipped = 77; ///< exit status of a test that ctest reports as skipped
@@ -265,11 +265,11 @@ int runFaults(int count, char** words) {
 }
 
 } // namespace
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults
 
 int main(int count, char** words) {
   try {
-    return fenestra::faults::runFaults(count, words);
+    return fenestra::core::faults::runFaults(count, words);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "FaultInjection: %s\n", error.what());
     return 1;

@@ -11,7 +11,7 @@
 
 #include <cxxabi.h>
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -214,9 +214,9 @@ Culprit findCulprit(const std::vector<Frame>& frames) {
     unnamedModule = module;
     if (function != "??")
       return {function + " (" + module + ")",
-              function.find("fenestra::") != std::string::npos || function == "main"};
+              function.find("fenestra::core::") != std::string::npos || function == "main"};
   }
   return {"unknown function (" + unnamedModule + ")", unnamedModule.empty()};
 }
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

@@ -3,7 +3,7 @@
 
 #include "Requests.h"
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 
 /// Runs the request with `fault` in `workspace`; returns one line per violation. A crash inside a
 /// library after a failed allocation is not a violation, but is reported in outcome.signal.
@@ -25,4 +25,4 @@ std::string findFunctionName(const Frame& frame);
 
 Culprit findCulprit(const std::vector<Frame>& frames);
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 
 /// Environment variable with the path of the page's file.
 inline constexpr const char* pageVariable = "FENESTRA_FAULTS_PAGE";
@@ -26,4 +26,4 @@ struct Page {
   Frame frames[40]; ///< stack of the thread that received the signal, innermost first
 };
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

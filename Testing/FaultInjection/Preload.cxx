@@ -25,7 +25,7 @@ void* __libc_memalign(std::size_t alignment, std::size_t size);
 
 namespace {
 
-using fenestra::faults::Page;
+using fenestra::core::faults::Page;
 
 Page* page = nullptr; ///< null until `main` starts
 
@@ -46,7 +46,7 @@ void onCrash(int signal) {
       Dl_info info = {};
       if (::dladdr(addresses[i], &info) == 0 || !info.dli_fname)
         continue;
-      fenestra::faults::Frame& frame = page->frames[page->frameCount++];
+      fenestra::core::faults::Frame& frame = page->frames[page->frameCount++];
       std::strncpy(frame.module, info.dli_fname, sizeof frame.module - 1);
       if (info.dli_sname)
         std::strncpy(frame.function, info.dli_sname, sizeof frame.function - 1);
@@ -62,7 +62,7 @@ using Main = int (*)(int, char**, char**);
 Main realMain = nullptr;
 
 int tracedMain(int count, char** words, char** environment) {
-  const char* const file = std::getenv(fenestra::faults::pageVariable);
+  const char* const file = std::getenv(fenestra::core::faults::pageVariable);
   const int opened = file ? ::open(file, O_RDWR | O_CLOEXEC) : -1;
   if (opened >= 0) {
     void* const shared =
@@ -75,7 +75,7 @@ int tracedMain(int count, char** words, char** environment) {
     if (shared != MAP_FAILED)
       page = static_cast<Page*>(shared);
   }
-  ::syscall(SYS_lseek, -1, 0, fenestra::faults::mainMarker);
+  ::syscall(SYS_lseek, -1, 0, fenestra::core::faults::mainMarker);
   return realMain(count, words, environment);
 }
 

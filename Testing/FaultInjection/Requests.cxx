@@ -5,7 +5,7 @@
 
 #include <unistd.h>
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,4 +163,4 @@ Baseline recordBaseline(const Request& request, const Tools& tools) {
   return baseline;
 }
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

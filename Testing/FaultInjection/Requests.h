@@ -5,7 +5,7 @@
 
 #include <map>
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 
 struct Request {
   std::string name;
@@ -73,4 +73,4 @@ struct Baseline {
 /// Runs a request without faults. Throws std::runtime_error if it fails.
 Baseline recordBaseline(const Request& request, const Tools& tools);
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

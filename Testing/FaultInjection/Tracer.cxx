@@ -26,7 +26,7 @@
 
 extern char** environ;
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 namespace {
 
 constexpr rlim_t cpuLimit = 20;                     ///< limit of a run's processor time in seconds
@@ -327,4 +327,4 @@ Outcome run(const Command& command, const Fault& fault) {
   return outcome;
 }
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra::faults {
+namespace fenestra::core::faults {
 
 struct Fault {
   enum class Kind {
@@ -47,4 +47,4 @@ bool canTrace();
 /// Runs a command until it ends. Thread-safe.
 Outcome run(const Command& command, const Fault& fault);
 
-} // namespace fenestra::faults
+} // namespace fenestra::core::faults

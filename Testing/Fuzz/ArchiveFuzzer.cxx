@@ -42,6 +42,6 @@ std::string fixChecksums(std::string zip) {
 } // namespace
 
 FENESTRA_FUZZ(Archive, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   fuzzing::loadScene(fuzzing::writeInput(fixChecksums(std::string(input)), "scene.mrb"));
 }

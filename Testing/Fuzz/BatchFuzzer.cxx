@@ -7,7 +7,7 @@
 #include <set>
 
 FENESTRA_FUZZ(Batch, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   const std::string name = fuzzing::chooseName(input, std::array{"t.csv", "record.json"});
   const std::filesystem::path path = fuzzing::writeInput(input, name);
   if (name == "t.csv") {

@@ -7,7 +7,7 @@
 #include <vector>
 
 FENESTRA_FUZZ(CommandLine, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   std::vector<std::string> words = {"fenestra"};
   while (!input.empty() && words.size() < 64) {
     const std::string_view word = input.substr(0, input.find('\n'));

@@ -14,7 +14,7 @@
 
 namespace {
 
-using namespace fenestra;
+using namespace fenestra::core;
 
 constexpr std::int64_t maxVoxels = 32 * 32 * 32;
 constexpr std::uint64_t maxBounces = 8;

@@ -13,7 +13,7 @@
 #include <cstdio>
 #include <random>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -128,14 +128,14 @@ int runAll(int total, Random random) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core
 
 int main(int argc, char** argv) {
-  fenestra::serveSandbox(argc, argv);
+  fenestra::core::serveSandbox(argc, argv);
   if (argc != 2 && argc != 3) {
     std::fprintf(stderr, "usage: CorruptedSandboxFiles COUNT [SEED]\n");
     return 2;
   }
-  return fenestra::runAll(std::atoi(argv[1]),
-                          fenestra::Random(argc == 3 ? std::stoull(argv[2]) : 1));
+  return fenestra::core::runAll(std::atoi(argv[1]),
+                                fenestra::core::Random(argc == 3 ? std::stoull(argv[2]) : 1));
 }

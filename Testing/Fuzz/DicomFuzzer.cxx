@@ -9,8 +9,8 @@
 namespace {
 
 /// Evens the spacing of slices and converts PET, as readDicomVolume does before it reads voxels.
-void place(fenestra::DicomSlices& slices, const fenestra::DicomSeries& series) {
-  using namespace fenestra;
+void place(fenestra::core::DicomSlices& slices, const fenestra::core::DicomSeries& series) {
+  using namespace fenestra::core;
   std::vector<Message> warnings;
   convertToSuv(slices, series, "series", warnings);
   std::vector<PlacedSlice> placed;
@@ -30,7 +30,7 @@ void place(fenestra::DicomSlices& slices, const fenestra::DicomSeries& series) {
 } // namespace
 
 FENESTRA_FUZZ(Dicom, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   const std::vector<DicomHeader> headers = [input] {
     try {
       return parseDicomHeaders(input, "slice.dcm");

@@ -6,7 +6,7 @@
 
 namespace {
 
-using namespace fenestra;
+using namespace fenestra::core;
 
 DicomObject parseObject(std::string_view reply, const std::string& source) {
   try {

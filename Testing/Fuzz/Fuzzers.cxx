@@ -7,14 +7,14 @@
 
 namespace {
 
-using fenestra::fuzzing::Target;
+using fenestra::core::fuzzing::Target;
 
 Target::Function chosen = nullptr;
 
 } // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
-  fenestra::serveSandbox(*argc, *argv);
+  fenestra::core::serveSandbox(*argc, *argv);
   const char* name = std::getenv("FENESTRA_FUZZ_TARGET");
   const auto found = Target::all().find(name ? name : "");
   if (found == Target::all().end()) {
@@ -33,6 +33,6 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  fenestra::fuzzing::expectReadOrError([bytes] { chosen(bytes); });
+  fenestra::core::fuzzing::expectReadOrError([bytes] { chosen(bytes); });
   return 0;
 }

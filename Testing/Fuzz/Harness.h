@@ -18,7 +18,7 @@
 #include <string>
 #include <string_view>
 
-namespace fenestra::fuzzing {
+namespace fenestra::core::fuzzing {
 
 /// Temporary folder of this process. run.sh sets TMPDIR to a folder in memory.
 inline const TemporaryFolder& folder() {
@@ -72,10 +72,10 @@ struct Target {
   }
 };
 
-} // namespace fenestra::fuzzing
+} // namespace fenestra::core::fuzzing
 
 /// Defines the function of a target, with the parameter `std::string_view input`.
 #define FENESTRA_FUZZ(name, input)                                                                 \
   static void fuzz##name(std::string_view input);                                                  \
-  static const fenestra::fuzzing::Target target##name(#name, fuzz##name);                          \
+  static const fenestra::core::fuzzing::Target target##name(#name, fuzz##name);                    \
   static void fuzz##name(std::string_view input)

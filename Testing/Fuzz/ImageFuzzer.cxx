@@ -4,7 +4,7 @@
 #include "files/images/ImageReader.h"
 
 FENESTRA_FUZZ(Image, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   const std::string name =
       fuzzing::chooseName(input, std::array{"p.exr", "p.png", "p.tif", "p.nrrd"});
   const Image image = readImage(fuzzing::writeInput(input, name));

@@ -4,7 +4,7 @@
 #include "files/segments/LabelNames.h"
 
 FENESTRA_FUZZ(Labels, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   const std::string name = fuzzing::chooseName(
       input, std::array{"a.ctbl", "a.label", "a.json", "a.csv", "xml", "a.tsv", "a.txt"});
   const auto names = name == "xml"

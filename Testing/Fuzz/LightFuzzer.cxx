@@ -4,5 +4,5 @@
 #include "files/appearance/LightReader.h"
 
 FENESTRA_FUZZ(Lights, input) {
-  fenestra::parseLights(input, "lights.json");
+  fenestra::core::parseLights(input, "lights.json");
 }

@@ -23,7 +23,7 @@
 #include <exception>
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -188,7 +188,7 @@ void makeTransforms(const fs::path& corpus) {
     writer->SetTransformIO(io);
     writer->SetInput(transform);
     writer->Update();
-    fenestra::save(corpus / "../Sandbox/Transform", name, readBytes(folder / name));
+    fenestra::core::save(corpus / "../Sandbox/Transform", name, readBytes(folder / name));
   };
   save("affine.h5", itk::HDF5TransformIOTemplate<double>::New());
   save("affine.mat", itk::MatlabTransformIOTemplate<double>::New());
@@ -354,7 +354,7 @@ void makeArchive(const fs::path& corpus) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -362,20 +362,20 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const fenestra::TemporaryFolder traps;
+    const fenestra::core::TemporaryFolder traps;
     constexpr double spacing = 12.0; // mm: 3 voxels per axis
-    fenestra::testing::writeFormatVariants(traps.path(), spacing);
-    fenestra::makeVolumes(argv[1], traps.path());
-    fenestra::makeImages(argv[1]);
-    fenestra::makeTransforms(argv[1]);
-    fenestra::makeSlices(argv[1]);
-    fenestra::makeSegmentFiles(argv[1]);
-    fenestra::makeReplies(argv[1]);
-    fenestra::makeImageReplies(argv[1]);
-    fenestra::makeObjectReplies(argv[1]);
-    fenestra::makeMasks(argv[1]);
-    fenestra::makeLabelTables(argv[1]);
-    fenestra::makeArchive(argv[1]);
+    fenestra::core::testing::writeFormatVariants(traps.path(), spacing);
+    fenestra::core::makeVolumes(argv[1], traps.path());
+    fenestra::core::makeImages(argv[1]);
+    fenestra::core::makeTransforms(argv[1]);
+    fenestra::core::makeSlices(argv[1]);
+    fenestra::core::makeSegmentFiles(argv[1]);
+    fenestra::core::makeReplies(argv[1]);
+    fenestra::core::makeImageReplies(argv[1]);
+    fenestra::core::makeObjectReplies(argv[1]);
+    fenestra::core::makeMasks(argv[1]);
+    fenestra::core::makeLabelTables(argv[1]);
+    fenestra::core::makeArchive(argv[1]);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "MakeSeeds: %s\n", error.what());

@@ -15,7 +15,7 @@ std::string makeMask() {
 } // namespace
 
 FENESTRA_FUZZ(MaskFolder, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   const std::array names{"a.nii", "b.nrrd", "c.mha", "d.mgh", "e.nii.gz"};
   static const bool isPrepared = [&] {
     for (const std::string name : names) {

@@ -4,10 +4,10 @@
 #include "files/appearance/MaterialReader.h"
 
 FENESTRA_FUZZ(Materials, input) {
-  static const fenestra::MaterialTable base = fenestra::parseMaterials(
+  static const fenestra::core::MaterialTable base = fenestra::core::parseMaterials(
       R"({"version": 1, "materials": {"fog": {"albedo": [1, 1, 1], "g": -0.5}}})", "beneath");
   if (input.find('{') != input.npos)
-    fenestra::parseMaterials(input, "materials.json", base);
+    fenestra::core::parseMaterials(input, "materials.json", base);
   else
-    fenestra::parseMaterialChange(std::string(input), base);
+    fenestra::core::parseMaterialChange(std::string(input), base);
 }

@@ -5,7 +5,7 @@
 #include "files/slicer/MrmlScene.h"
 
 FENESTRA_FUZZ(Roi, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   static const auto scenePath = fuzzing::writeInput(
       "<MRML version=\"Slicer5\" userTags=\"\">"
       "<MarkupsROI id=\"roi\" name=\"R\" references=\"storage:file;\"></MarkupsROI>"

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-namespace fenestra::fuzzing {
+namespace fenestra::core::fuzzing {
 
 /// Contents by file name.
 inline std::map<std::string, std::string> sceneFixtures() {
@@ -39,4 +39,4 @@ inline void writeSceneFixtures() {
   static_cast<void>(written);
 }
 
-} // namespace fenestra::fuzzing
+} // namespace fenestra::core::fuzzing

@@ -3,7 +3,7 @@
 #include "SceneInputs.h"
 
 FENESTRA_FUZZ(Scene, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   fuzzing::writeSceneFixtures();
   fuzzing::loadScene(fuzzing::writeInput(input, "scene.mrml"));
 }

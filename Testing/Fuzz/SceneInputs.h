@@ -6,7 +6,7 @@
 
 #include "scene/Input.h"
 
-namespace fenestra::fuzzing {
+namespace fenestra::core::fuzzing {
 
 inline void loadScene(const std::filesystem::path& path) {
   const Input input(path);
@@ -19,4 +19,4 @@ inline void loadScene(const std::filesystem::path& path) {
   input.segments({}, volume.grid).segmentation.makeFocusMask({"A"}, volume.grid);
 }
 
-} // namespace fenestra::fuzzing
+} // namespace fenestra::core::fuzzing

@@ -4,7 +4,7 @@
 #include "files/segments/SegmentationReader.h"
 
 FENESTRA_FUZZ(Segmentation, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   const Segmentation segmentation = readSegmentation(fuzzing::writeInput(input, "s.seg.nrrd"));
   std::vector<std::string> focus;
   for (const SegmentInfo& segment : segmentation.segments())

@@ -5,7 +5,7 @@
 #include "program/ServeInput.h"
 
 FENESTRA_FUZZ(Serve, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   OptionValues values(renderSyntax.options);
   values.add("INPUT", "volume.nrrd");
   const nlohmann::json change = parseJson(input, "a line");

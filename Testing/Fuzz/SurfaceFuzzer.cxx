@@ -5,7 +5,7 @@
 #include "files/segments/SegmentationReader.h"
 
 FENESTRA_FUZZ(Surface, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   static const auto validList =
       fuzzing::writeInput("<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>"
                           "<DataSet index=\"0\" file=\"s.vtp\"/></vtkMultiBlockDataSet></VTKFile>",

@@ -7,7 +7,7 @@
 namespace {
 
 void readTransfer(std::string_view input, const std::string& name) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   const TransferFunction transfer = readTransferFile(fuzzing::writeInput(input, name))
                                         .mapScalars(std::array{-1e3, 0.0, 10.0, 1e3});
   for (const double s : {-1e30, -1000.0, 0.0, 0.5, 300.0, 1e30})

@@ -6,7 +6,7 @@
 #include "files/slicer/TransformFile.h"
 
 FENESTRA_FUZZ(Transform, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   const Affine toParent = parseTransformReply("t.h5", input).inverse();
   if (!allFinite(toParent))
     throw std::logic_error("the map is not finite");

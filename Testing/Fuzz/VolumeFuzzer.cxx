@@ -6,7 +6,7 @@
 #include "files/medical/VolumeReader.h"
 
 FENESTRA_FUZZ(Volume, input) {
-  using namespace fenestra;
+  using namespace fenestra::core;
   static const auto samples = fuzzing::writeInput(std::string(256, '\x2a'), "samples.raw");
   static const auto pair = fuzzing::writeInput(std::string(256, '\x2a'), "v.img");
   const std::string name =

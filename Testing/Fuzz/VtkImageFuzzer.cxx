@@ -4,5 +4,5 @@
 #include "files/medical/VolumeReader.h"
 
 FENESTRA_FUZZ(VtkImage, input) {
-  fenestra::readVolume(fenestra::fuzzing::writeInput(input, "v.vti"));
+  fenestra::core::readVolume(fenestra::core::fuzzing::writeInput(input, "v.vti"));
 }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 namespace {
 
 /// Position, in [low, high], of the maximum of a function with one maximum there (ternary search).
@@ -335,4 +335,4 @@ Vec3 Clipping::cutGradient(const Vec3& world) const {
   return 0.8 * inward.normalized();
 }
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 
 /// The interpolated indicator of a mask, which must outlive the object.
 class FocusField {
@@ -58,4 +58,4 @@ private:
   std::vector<double> m_depths;
 };
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 
 /// Contribution of one path to its pixel.
 struct PathEstimate {
@@ -62,4 +62,4 @@ struct Estimates {
         pixels(static_cast<std::size_t>(widthIn * heightIn)) {}
 };
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

@@ -1,6 +1,6 @@
 #include "Lights.h"
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 namespace {
 
 /// Maximum distance of a corner of the volume's box from its center, mm.
@@ -192,4 +192,4 @@ double Lights::areaPdf(const Ray& ray) const {
   return sum / static_cast<double>(m_areas.size() + m_spheres.size());
 }
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

@@ -5,7 +5,7 @@
 #include "Scatter.h"
 #include "View.h"
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 
 /// Area light in world space, mm.
 struct PlacedArea {
@@ -53,4 +53,4 @@ private:
   std::vector<PlacedSphere> m_spheres;
 };
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

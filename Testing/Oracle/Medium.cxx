@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 namespace {
 
 template <int Channels>
@@ -176,4 +176,4 @@ Interval intersectBox(const Box& box, const Ray& ray) {
   return part;
 }
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

@@ -3,7 +3,7 @@
 
 #include "OracleScene.h"
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 
 /// Value at s from sorted knots; at a step, the value on its right.
 Rgb evaluate(const ColorFunction& f, double s);
@@ -51,4 +51,4 @@ private:
   std::optional<Affine> m_worldToCrop;
 };
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

@@ -9,7 +9,7 @@
 
 #include <stdexcept>
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 namespace {
 
 using Component = ComponentsDescription::Component;
@@ -253,4 +253,4 @@ Estimates render(const OracleScene& scene, std::uint64_t samples, std::uint64_t 
   return estimates;
 }
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 
 /// Edge of a clip: removed parts keep the factor `ghost` on their extinction. Behind the surface
 /// the full extinction returns over `softness` mm.
@@ -102,4 +102,4 @@ struct OracleScene {
   std::optional<ComponentsDescription> components = {};
 };
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

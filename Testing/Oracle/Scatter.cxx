@@ -1,6 +1,6 @@
 #include "Scatter.h"
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 namespace {
 
 /// Some unit vector perpendicular to `direction`.
@@ -139,4 +139,4 @@ double Scatterer::pdf(const Vec3& outgoing) const {
   return 0.5 * lambert + 0.5 * glossy;
 }
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 
 using Generator = std::mt19937_64;
 
@@ -42,4 +42,4 @@ private:
   Vec3 m_normal = Vec3::Zero(); ///< unit, toward the path's origin
 };
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

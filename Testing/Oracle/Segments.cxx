@@ -4,7 +4,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 namespace {
 
 /// First voxel of a mask in the label map's index space.
@@ -104,4 +104,4 @@ Segments::Weights Segments::computeVoxel(const Vec3& at) const {
   return weights;
 }
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 
 class Segments {
 public:
@@ -32,4 +32,4 @@ private:
   std::vector<Weights> m_voxels;
 };
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

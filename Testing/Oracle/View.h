@@ -3,7 +3,7 @@
 
 #include "OracleScene.h"
 
-namespace fenestra::oracle {
+namespace fenestra::core::oracle {
 
 struct View {
   Vec3 position, right, up, forward; ///< world
@@ -38,4 +38,4 @@ struct View {
   }
 };
 
-} // namespace fenestra::oracle
+} // namespace fenestra::core::oracle

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 namespace {
 
@@ -97,4 +97,4 @@ Agreement compareWithBaseline(const Image& image, const Image& baseline) {
           compareTiles(std::max(image.width, image.height))};
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 struct RegressionCase {
   std::string name;
@@ -49,4 +49,4 @@ struct Agreement {
 
 Agreement compareWithBaseline(const Image& image, const Image& baseline);
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -15,7 +15,7 @@ constexpr std::uint64_t moreSamples = 8;
 } // namespace
 
 int main(int argc, char** argv) {
-  using namespace fenestra::testing;
+  using namespace fenestra::core::testing;
   try {
     const std::set<std::string> wanted(argv + 1, argv + argc);
     for (const RegressionCase& c : readCases())

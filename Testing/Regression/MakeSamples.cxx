@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
   }
   try {
     constexpr double spacing = 1.6; // mm: 25 voxels per axis; the largest file has 130 KB
-    fenestra::testing::writeFormatVariants(argv[1], spacing);
+    fenestra::core::testing::writeFormatVariants(argv[1], spacing);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "MakeSamples: %s\n", error.what());

@@ -11,7 +11,7 @@
 #include <functional>
 #include <iostream>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 std::string describe(const Agreement& a) {
@@ -129,4 +129,4 @@ INSTANTIATE_TEST_SUITE_P(Mutations, RegressionMutation, ::testing::ValuesIn(muta
                          [](const auto& info) { return info.param.name; });
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

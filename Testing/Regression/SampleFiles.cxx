@@ -14,7 +14,7 @@
 #include <string>
 #include <type_traits>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 constexpr double fieldOfView = 40.0; // mm, around the origin
@@ -278,4 +278,4 @@ void writeFormatVariants(const std::filesystem::path& folder, double spacing) {
   writeSegments(folder, spacing);
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Writes volumes and segmentations with voxels of about `spacing` mm over a field of view of 40 mm
 /// into `folder`, which must exist.
 void writeFormatVariants(const std::filesystem::path& folder, double spacing);
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

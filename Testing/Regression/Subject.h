@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Partial coverage by a shape: 1 for distances <= -1/2 mm, 0 for distances >= 1/2 mm.
 inline double coverage(double signedDistance) {
@@ -47,4 +47,4 @@ inline double subject(const Vec3& p) {
   return value;
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

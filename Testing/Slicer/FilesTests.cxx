@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 QString toQString(const std::filesystem::path& path) {
@@ -162,4 +162,4 @@ TEST_F(SlicerCopies, ExistingListsTheFilesThatWriteWouldReplace) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core

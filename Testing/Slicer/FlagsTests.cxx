@@ -8,7 +8,7 @@
 #include <QXmlStreamReader>
 #include <gtest/gtest.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using SlicerExport::checkFlag;
@@ -183,4 +183,4 @@ TEST(SlicerFlags, ChangesToMissingSegmentsAreRemoved) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core

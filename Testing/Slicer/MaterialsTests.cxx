@@ -22,7 +22,7 @@
 #include <functional>
 #include <numeric>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Flags = std::map<std::string, std::string>;
@@ -424,4 +424,4 @@ TEST_F(SlicerMaterials, ResetRemovesAllChanges) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core

@@ -18,7 +18,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Kind = qFenestraOutcome::Kind;
@@ -381,4 +381,4 @@ TEST_F(SlicerPreview, FailedStartHasTheRenderersMessage) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core

@@ -12,7 +12,7 @@
 #include <numeric>
 #include <system_error>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Image of ascending values; its matrix has numbers that need all digits.
@@ -155,4 +155,4 @@ TEST(SlicerSceneFiles, SegmentNamesHaveSlicersColorsAndNewLabelValues) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::AdaptiveTests {
+namespace fenestra::core::testing::AdaptiveTests {
 namespace {
 
 /// Small bright light next to a dark ball: few paths hit the light by chance, so the samples of a
@@ -105,4 +105,4 @@ TEST(AdaptiveSampling, StopsAtTargetWithUnequalSampleCounts) {
 }
 
 } // namespace
-} // namespace fenestra::testing::AdaptiveTests
+} // namespace fenestra::core::testing::AdaptiveTests

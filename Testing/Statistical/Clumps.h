@@ -4,7 +4,7 @@
 
 #include "RgbEstimate.h"
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Volume with albedo `dark` at scalar 0 and `bright` at 1, on a rotated grid of unequal spacing.
 /// Its radius is about 2 mm; a third of the incident light passes.
@@ -43,4 +43,4 @@ inline RgbEstimate estimateScattered(TestScene& scene, const Vec3& light, const 
   return estimateRgb(scene.render(settings).film) * (4.0 * radius * radius);
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

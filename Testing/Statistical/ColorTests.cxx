@@ -5,7 +5,7 @@
 #include "model/medium/Reflectance.h"
 #include "scene/SegmentTint.h"
 
-namespace fenestra::testing::ColorTests {
+namespace fenestra::core::testing::ColorTests {
 namespace {
 
 /// Thickness in free paths that replaces a half-space; grows with the transport mean free path.
@@ -103,4 +103,4 @@ TEST(Furnace, CoatedWhiteSurfaceHasNearlyRadianceOne) {
 }
 
 } // namespace
-} // namespace fenestra::testing::ColorTests
+} // namespace fenestra::core::testing::ColorTests

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 constexpr int tileSize = 4;
@@ -243,4 +243,4 @@ std::vector<HypothesisTest> testHypotheses(const std::vector<Outcome>& outcomes)
            normalTail(sum / std::sqrt(std::max(nImages, 1.0)))}};
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Seeds and budget of a run over the matrix.
 struct MatrixSettings {
@@ -62,4 +62,4 @@ struct HypothesisTest {
 /// the images' p-values, and the images' mean z.
 std::vector<HypothesisTest> testHypotheses(const std::vector<Outcome>& outcomes);
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

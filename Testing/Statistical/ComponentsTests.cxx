@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <iostream>
 
-namespace fenestra::testing::ComponentsTests {
+namespace fenestra::core::testing::ComponentsTests {
 namespace {
 
 constexpr Integrator integrators[] = {Integrator::simd, Integrator::scalar};
@@ -364,4 +364,4 @@ TEST(MajorantOfComponents, IsNeverExceeded) {
 }
 
 } // namespace
-} // namespace fenestra::testing::ComponentsTests
+} // namespace fenestra::core::testing::ComponentsTests

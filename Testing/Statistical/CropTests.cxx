@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::CropTests {
+namespace fenestra::core::testing::CropTests {
 namespace {
 
 Volume makeUniformVolume(const Grid& grid) {
@@ -155,4 +155,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, CroppedImage,
                          [](const auto& info) { return std::string(info.param.name); });
 
 } // namespace
-} // namespace fenestra::testing::CropTests
+} // namespace fenestra::core::testing::CropTests

@@ -4,7 +4,7 @@
 #include "Clumps.h"
 #include "LineIntegral.h"
 
-namespace fenestra::testing::EnergyTests {
+namespace fenestra::core::testing::EnergyTests {
 namespace {
 
 /// Ray along `direction` from a square of half edge `half`, perpendicular to `direction`, 2 `half`
@@ -155,4 +155,4 @@ TEST_P(Energy, OutgoingPlusAbsorbedEqualsIncoming) {
 INSTANTIATE_TEST_SUITE_P(Anisotropies, Energy, ::testing::Values(0.0, 0.5, -0.5));
 
 } // namespace
-} // namespace fenestra::testing::EnergyTests
+} // namespace fenestra::core::testing::EnergyTests

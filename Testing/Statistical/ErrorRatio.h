@@ -3,7 +3,7 @@
 
 #include "Support.h"
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Sum over pixels of the estimated variance / sum of the variance over seeds, with its standard
 /// error: 1 if images estimate their error correctly.
@@ -69,4 +69,4 @@ inline TestScene makeFogScene() {
   return scene;
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

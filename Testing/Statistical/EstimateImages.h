@@ -4,7 +4,7 @@
 #include "Oracle/Estimates.h"
 #include "image/Image.h"
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Image with R, G, B, error.R, error.G, error.B and samples.N.
 inline Image toImage(const oracle::Estimates& estimates) {
@@ -21,4 +21,4 @@ inline Image toImage(const oracle::Estimates& estimates) {
   return image;
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -14,7 +14,7 @@
 #include <array>
 #include <vector>
 
-namespace fenestra::testing::FiniteSlabTests {
+namespace fenestra::core::testing::FiniteSlabTests {
 namespace {
 
 /// E_n(x) = ∫_1^infinity exp(-x u) u^-n du.
@@ -186,4 +186,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 } // namespace
-} // namespace fenestra::testing::FiniteSlabTests
+} // namespace fenestra::core::testing::FiniteSlabTests

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::FurnaceTests {
+namespace fenestra::core::testing::FurnaceTests {
 namespace {
 
 enum class MediumKind { homogeneous, heterogeneous, spikes };
@@ -143,4 +143,4 @@ TEST(SingleColorSky, EqualsConstantEnvironment) {
 }
 
 } // namespace
-} // namespace fenestra::testing::FurnaceTests
+} // namespace fenestra::core::testing::FurnaceTests

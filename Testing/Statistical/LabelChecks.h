@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Mask of the voxels of a grid that satisfy isInside(voxel).
 template <typename Predicate>
@@ -47,4 +47,4 @@ inline bool areLabelsValid() {
   return greatestStep < 0.25 && last > 0.4;
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -1,6 +1,6 @@
 #include "LineIntegral.h"
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 /// Roots of c1 + 2 c2 u + 3 c3 u^2 in (0, 1), and 0 and 1, sorted.
@@ -152,4 +152,4 @@ double LineIntegral::extinction(double scalar) const {
   return m_knots.back().extinction;
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

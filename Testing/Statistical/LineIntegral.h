@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 class LineIntegral {
 public:
@@ -44,4 +44,4 @@ private:
   std::vector<Knot> m_knots;
 };
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

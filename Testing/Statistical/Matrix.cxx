@@ -3,7 +3,7 @@
 #include <numeric>
 #include <sstream>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 // ---- the design
@@ -439,4 +439,4 @@ oracle::OracleScene MatrixScene::toOracleScene() const {
           components};
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -16,7 +16,7 @@
 
 #include <string>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 enum class ViewFactor { orthographic, perspective, orthographicInside, perspectiveInside };
 enum class ClipFactor { none, plane, cutaway, surface, exactSurface, hole };
@@ -91,4 +91,4 @@ struct MatrixScene {
 
 MatrixScene makeMatrixScene(const Combination& c);
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

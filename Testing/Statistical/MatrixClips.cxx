@@ -2,7 +2,7 @@
 
 #include "clip/surface/ClippingSurface.h"
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 /// Two balls, one of which has a cylindrical hole.
@@ -119,4 +119,4 @@ void styleContext(StyleFactor factor, MatrixScene& scene) {
   scene.fenestra.style = {std::make_shared<const Mask>(makeFocus()), extinction, saturation};
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 using Generator = std::mt19937_64;
 
@@ -24,4 +24,4 @@ void placeClip(const Combination& c, Generator& generator, MatrixScene& scene);
 
 void styleContext(StyleFactor factor, MatrixScene& scene);
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

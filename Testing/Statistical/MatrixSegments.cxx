@@ -1,6 +1,6 @@
 #include "MatrixSegments.h"
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 struct Ball {
@@ -133,4 +133,4 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
   scene.components = std::move(all);
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

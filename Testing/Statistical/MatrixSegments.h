@@ -3,10 +3,10 @@
 
 #include "MatrixClips.h"
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Adds the combination's segments with their media or colors; requires the scene's volume. Their
 /// label map is rotated relative to the volume and does not cover it.
 void placeSegments(const Combination& c, Generator& generator, MatrixScene& scene);
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -12,7 +12,7 @@
 #include <iostream>
 #include <map>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 /// Writes the images that show an error; returns a message that names their folder.
@@ -70,4 +70,4 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Matrix,
                          });
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

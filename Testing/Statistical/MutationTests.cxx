@@ -21,7 +21,7 @@
 #include <fstream>
 #include <iostream>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 struct Mutation {
@@ -205,4 +205,4 @@ TEST(Mutations, AreAllFound) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

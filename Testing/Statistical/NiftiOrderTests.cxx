@@ -12,7 +12,7 @@
 
 #include <algorithm>
 
-namespace fenestra::testing::NiftiOrderTests {
+namespace fenestra::core::testing::NiftiOrderTests {
 namespace {
 
 const Size3 size(10, 12, 14);
@@ -74,4 +74,4 @@ TEST(NiftiOrder, EveryOrderAndSignOfAxesRendersTheSameImage) {
 }
 
 } // namespace
-} // namespace fenestra::testing::NiftiOrderTests
+} // namespace fenestra::core::testing::NiftiOrderTests

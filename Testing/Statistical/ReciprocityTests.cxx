@@ -8,7 +8,7 @@
 
 #include <array>
 
-namespace fenestra::testing::ReciprocityTests {
+namespace fenestra::core::testing::ReciprocityTests {
 namespace {
 
 enum class Cut { none, plane };
@@ -62,4 +62,4 @@ INSTANTIATE_TEST_SUITE_P(Volumes, Reciprocity,
                                             ::testing::Values(Cut::none, Cut::plane)));
 
 } // namespace
-} // namespace fenestra::testing::ReciprocityTests
+} // namespace fenestra::core::testing::ReciprocityTests

@@ -20,7 +20,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 struct ReferenceCase {
@@ -179,4 +179,4 @@ TEST(ReferenceFurnace, MeanOfS3hetIsOne) {
 }
 
 } // namespace
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

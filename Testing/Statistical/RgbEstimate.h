@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 struct RgbEstimate {
   Rgb mean = Rgb::Zero(), error = Rgb::Zero(); ///< error: standard error of the mean
@@ -43,4 +43,4 @@ inline void expectMean(const RgbEstimate& estimate, const Rgb& expected, double 
   }
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 namespace {
 
 double square(double x) {
@@ -83,4 +83,4 @@ double normalTail(double z) {
   return std::erfc(std::abs(z) / std::sqrt(2.0));
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Mean of samples, with its uncertainty.
 struct Estimated {
@@ -47,4 +47,4 @@ double uniformityProbability(std::vector<double> probabilities);
 /// Two-sided tail probability of a standard normal value.
 double normalTail(double z);
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -7,7 +7,7 @@
 
 #include "Slab.h"
 
-namespace fenestra::testing::SingleScatterTests {
+namespace fenestra::core::testing::SingleScatterTests {
 namespace {
 
 /// Henyey and Greenstein 1941, per steradian; `cosine`: of the angle between the directions of
@@ -90,4 +90,4 @@ TEST(SingleScatterOfLights, StratifiedLightsAddUp) {
 INSTANTIATE_TEST_SUITE_P(Anisotropies, SingleScatter, ::testing::Values(-0.9, 0.0, 0.5, 0.9));
 
 } // namespace
-} // namespace fenestra::testing::SingleScatterTests
+} // namespace fenestra::core::testing::SingleScatterTests

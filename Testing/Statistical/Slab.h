@@ -4,7 +4,7 @@
 
 #include "RgbEstimate.h"
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Slab of one medium, side x side x thickness mm, seen from above: the camera looks along -z.
 inline TestScene makeSlab(double side, double thickness, const Rgb& albedo, double sigma_t = 1.0) {
@@ -53,4 +53,4 @@ inline RgbEstimate renderMean(const TestScene& scene, std::uint64_t samples, std
   return estimateRgb(scene.render(settings).film);
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

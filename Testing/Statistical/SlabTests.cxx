@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace fenestra::testing::SlabTests {
+namespace fenestra::core::testing::SlabTests {
 namespace {
 
 class SlabTransmittance : public ::testing::TestWithParam<double> {};
@@ -152,4 +152,4 @@ TEST(HalfSpace, ParallelLightFollowsLawOfDiffuseReflection) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SlabTests
+} // namespace fenestra::core::testing::SlabTests

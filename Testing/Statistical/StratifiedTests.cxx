@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::StratifiedTests {
+namespace fenestra::core::testing::StratifiedTests {
 namespace {
 
 struct Mode {
@@ -93,4 +93,4 @@ TEST(StratifiedSampling, ReducesNoise) {
 }
 
 } // namespace
-} // namespace fenestra::testing::StratifiedTests
+} // namespace fenestra::core::testing::StratifiedTests

@@ -8,7 +8,7 @@
 #include "clip/surface/ClippingSurface.h"
 #include "integrator/simd/Tracker.h"
 
-namespace fenestra::testing::TransmittanceTests {
+namespace fenestra::core::testing::TransmittanceTests {
 namespace {
 
 struct Subject {
@@ -424,4 +424,4 @@ INSTANTIATE_TEST_SUITE_P(Media, Tracking,
                          });
 
 } // namespace
-} // namespace fenestra::testing::TransmittanceTests
+} // namespace fenestra::core::testing::TransmittanceTests

@@ -2,7 +2,7 @@
 
 #include "StressSupport.h"
 
-namespace fenestra::testing::AccumulationStressTests {
+namespace fenestra::core::testing::AccumulationStressTests {
 namespace {
 
 constexpr std::uint64_t million = 1'000'000;
@@ -152,4 +152,4 @@ TEST(SampleIndices, IndicesBeyond32BitsGiveNewSamples) {
 }
 
 } // namespace
-} // namespace fenestra::testing::AccumulationStressTests
+} // namespace fenestra::core::testing::AccumulationStressTests

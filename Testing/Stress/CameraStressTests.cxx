@@ -3,7 +3,7 @@
 
 #include "StressSupport.h"
 
-namespace fenestra::testing::CameraStressTests {
+namespace fenestra::core::testing::CameraStressTests {
 namespace {
 
 constexpr double sigma = 0.25;
@@ -199,4 +199,4 @@ TEST(SharpScattering, MirrorsConvergeWithGrowingPower) {
 }
 
 } // namespace
-} // namespace fenestra::testing::CameraStressTests
+} // namespace fenestra::core::testing::CameraStressTests

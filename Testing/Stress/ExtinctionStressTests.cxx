@@ -5,7 +5,7 @@
 
 #include "integrator/simd/Tracker.h"
 
-namespace fenestra::testing::ExtinctionStressTests {
+namespace fenestra::core::testing::ExtinctionStressTests {
 namespace {
 
 constexpr double thinnest = 1e-8; // per mm
@@ -288,4 +288,4 @@ TEST(FarCamera, TransmittanceDoesNotDependOnDistance) {
 }
 
 } // namespace
-} // namespace fenestra::testing::ExtinctionStressTests
+} // namespace fenestra::core::testing::ExtinctionStressTests

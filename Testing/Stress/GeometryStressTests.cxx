@@ -3,7 +3,7 @@
 
 #include "StressSupport.h"
 
-namespace fenestra::testing::GeometryStressTests {
+namespace fenestra::core::testing::GeometryStressTests {
 namespace {
 
 double bump(const Vec3& p) {
@@ -202,4 +202,4 @@ TEST(NeedleVoxels, DiagonalTransmittanceEqualsExpOfIntegral) {
 }
 
 } // namespace
-} // namespace fenestra::testing::GeometryStressTests
+} // namespace fenestra::core::testing::GeometryStressTests

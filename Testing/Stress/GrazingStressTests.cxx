@@ -2,7 +2,7 @@
 
 #include "StressSupport.h"
 
-namespace fenestra::testing::GrazingStressTests {
+namespace fenestra::core::testing::GrazingStressTests {
 namespace {
 
 constexpr double sigma = 0.2;
@@ -169,4 +169,4 @@ TEST(ExactFaces, RayInFaceCountsAsInside) {
 }
 
 } // namespace
-} // namespace fenestra::testing::GrazingStressTests
+} // namespace fenestra::core::testing::GrazingStressTests

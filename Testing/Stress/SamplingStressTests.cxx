@@ -3,7 +3,7 @@
 #include "Approx.h"
 #include "StressSupport.h"
 
-namespace fenestra::testing::SamplingStressTests {
+namespace fenestra::core::testing::SamplingStressTests {
 namespace {
 
 constexpr double ends[] = {0.0, 0x1p-53, 0.25, 0.5, 0.75, largestUniform};
@@ -315,4 +315,4 @@ TEST(PathEnds, RadianceIsBoundedByNumberOfCollisions) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SamplingStressTests
+} // namespace fenestra::core::testing::SamplingStressTests

@@ -5,7 +5,7 @@
 #include <array>
 #include <fstream>
 
-namespace fenestra::testing::SizeStressTests {
+namespace fenestra::core::testing::SizeStressTests {
 namespace {
 
 /// Continuous field by its definition: trilinear interpolation of the voxels, clamped.
@@ -257,4 +257,4 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreVisible) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SizeStressTests
+} // namespace fenestra::core::testing::SizeStressTests

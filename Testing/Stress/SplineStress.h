@@ -11,7 +11,7 @@
 
 #include <vector>
 
-namespace fenestra::testing_clipping {
+namespace fenestra::core::testing_clipping {
 
 using FiftyDigits = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>,
                                                   boost::multiprecision::et_off>;
@@ -87,4 +87,4 @@ inline double errorBound(const ThinPlateSpline& spline) {
   return std::max(1e-9, 1e-14 * computeConditionNumber(spline));
 }
 
-} // namespace fenestra::testing_clipping
+} // namespace fenestra::core::testing_clipping

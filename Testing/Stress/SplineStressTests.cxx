@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <sstream>
 
-namespace fenestra::SplineStressTests {
+namespace fenestra::core::SplineStressTests {
 using namespace testing_clipping;
 
 namespace {
@@ -364,4 +364,4 @@ TEST(SplineStress, ConditionNumberStaysSmall) {
 }
 
 } // namespace
-} // namespace fenestra::SplineStressTests
+} // namespace fenestra::core::SplineStressTests

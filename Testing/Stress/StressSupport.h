@@ -8,7 +8,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 inline constexpr double largestUniform = 1.0 - 0x1p-53;
 
@@ -208,4 +208,4 @@ inline void expectRadianceOne(const RenderResult& result) {
   EXPECT_LT(estimate.error, 0.02);
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -10,7 +10,7 @@
 
 #include <set>
 
-namespace fenestra::SurfaceStressTests {
+namespace fenestra::core::SurfaceStressTests {
 using namespace testing_clipping;
 
 inline constexpr std::array projections{Projection::orthographic, Projection::perspective};
@@ -251,4 +251,4 @@ inline void expectValid(const View& view) {
     }
 }
 
-} // namespace fenestra::SurfaceStressTests
+} // namespace fenestra::core::SurfaceStressTests

@@ -3,7 +3,7 @@
 #include "ErrorChecks.h"
 #include "Stress/SurfaceChecks.h"
 
-namespace fenestra::SurfaceStressTests {
+namespace fenestra::core::SurfaceStressTests {
 namespace {
 
 // ---- focuses
@@ -253,4 +253,4 @@ TEST(SurfaceStress, FocusThatNoRayHitsIsError) {
 }
 
 } // namespace
-} // namespace fenestra::SurfaceStressTests
+} // namespace fenestra::core::SurfaceStressTests

@@ -4,7 +4,7 @@
 
 #include "Curves.h"
 
-namespace fenestra::testing::TransferStressTests {
+namespace fenestra::core::testing::TransferStressTests {
 namespace {
 
 using Knots = std::vector<ScalarFunction::Knot>;
@@ -216,4 +216,4 @@ TEST(Classification, ConstantVolumeHasConstantExtinction) {
 }
 
 } // namespace
-} // namespace fenestra::testing::TransferStressTests
+} // namespace fenestra::core::testing::TransferStressTests

@@ -7,7 +7,7 @@
 #include "files/medical/VolumeReader.h"
 #include "scene/PreparedScene.h"
 
-namespace fenestra::testing::VoxelStressTests {
+namespace fenestra::core::testing::VoxelStressTests {
 namespace {
 
 /// Geometry of 4x4x4 voxels of 1 mm.
@@ -215,4 +215,4 @@ TEST(ExtinctionLimit, ReflectanceEqualsChandrasekharsValue) {
 }
 
 } // namespace
-} // namespace fenestra::testing::VoxelStressTests
+} // namespace fenestra::core::testing::VoxelStressTests

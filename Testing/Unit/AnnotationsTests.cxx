@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::AnnotationsTests {
+namespace fenestra::core::testing::AnnotationsTests {
 namespace {
 
 /// Values of one channel, row 0 at the top.
@@ -199,4 +199,4 @@ TEST(Annotations, FitEveryImage) {
 }
 
 } // namespace
-} // namespace fenestra::testing::AnnotationsTests
+} // namespace fenestra::core::testing::AnnotationsTests

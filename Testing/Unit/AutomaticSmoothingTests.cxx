@@ -9,7 +9,7 @@
 #include <functional>
 #include <random>
 
-namespace fenestra::AutomaticSmoothingTests {
+namespace fenestra::core::AutomaticSmoothingTests {
 using namespace testing_clipping;
 
 namespace {
@@ -290,4 +290,4 @@ TEST(AutomaticSmoothing, VesselsKeepTheirWidth) {
 }
 
 } // namespace
-} // namespace fenestra::AutomaticSmoothingTests
+} // namespace fenestra::core::AutomaticSmoothingTests

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-namespace fenestra::testing::AutomaticViewTests {
+namespace fenestra::core::testing::AutomaticViewTests {
 namespace {
 
 /// Cube of 60 mm filled with a transparent context.
@@ -145,4 +145,4 @@ TEST_F(AutomaticView, EmptyFocusIsShownFromAnterior) {
 }
 
 } // namespace
-} // namespace fenestra::testing::AutomaticViewTests
+} // namespace fenestra::core::testing::AutomaticViewTests

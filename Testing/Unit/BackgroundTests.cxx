@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::BackgroundTests {
+namespace fenestra::core::testing::BackgroundTests {
 namespace {
 
 /// Renders 4 x 8 pixels of a volume without scattering in front of a background.
@@ -103,4 +103,4 @@ TEST(Background, IsVisibleThroughTheVolumeForAnyNumberOfThreads) {
 }
 
 } // namespace
-} // namespace fenestra::testing::BackgroundTests
+} // namespace fenestra::core::testing::BackgroundTests

@@ -9,7 +9,7 @@
 #include <array>
 #include <random>
 
-namespace fenestra::testing::CheckpointFileTests {
+namespace fenestra::core::testing::CheckpointFileTests {
 namespace {
 
 const nlohmann::ordered_json testMetadata = {{"version", "1"}, {"settings", {{"seed", {"1"}}}}};
@@ -164,4 +164,4 @@ TEST(CheckpointFile, ChangedFileWithACorrectDigestIsReadOrRejected) {
 }
 
 } // namespace
-} // namespace fenestra::testing::CheckpointFileTests
+} // namespace fenestra::core::testing::CheckpointFileTests

@@ -10,7 +10,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace fenestra::ChildProcessTests {
+namespace fenestra::core::ChildProcessTests {
 namespace {
 
 /// Arguments that run one of the disabled cases below.
@@ -98,4 +98,4 @@ TEST(ChildProcess, EndsOnASignalAndWhenDestroyed) {
 }
 
 } // namespace
-} // namespace fenestra::ChildProcessTests
+} // namespace fenestra::core::ChildProcessTests

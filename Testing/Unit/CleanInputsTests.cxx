@@ -8,7 +8,7 @@
 
 #include <functional>
 
-namespace fenestra::CleanInputsTests {
+namespace fenestra::core::CleanInputsTests {
 namespace {
 
 using namespace dicomSlices;
@@ -65,7 +65,7 @@ Path writeNifti(const TemporaryFolder& folder) {
 
 Path writeNifti2(const TemporaryFolder& folder) {
   Affine map;
-  return folder.write("v.nii", fenestra::makeNifti2(makeNifti(map), std::endian::little));
+  return folder.write("v.nii", fenestra::core::makeNifti2(makeNifti(map), std::endian::little));
 }
 
 Path writePair(const TemporaryFolder& folder) {
@@ -284,4 +284,4 @@ TEST(CleanInputs, ScenesAndArchivesGiveNoWarning) {
 }
 
 } // namespace
-} // namespace fenestra::CleanInputsTests
+} // namespace fenestra::core::CleanInputsTests

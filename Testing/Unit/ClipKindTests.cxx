@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::ClipKindTests {
+namespace fenestra::core::ClipKindTests {
 using namespace testing_clipping;
 
 namespace {
@@ -277,4 +277,4 @@ TEST(BoundaryMetrics, JumpsWithinTheFocusAreCountedSeparately) {
 }
 
 } // namespace
-} // namespace fenestra::ClipKindTests
+} // namespace fenestra::core::ClipKindTests

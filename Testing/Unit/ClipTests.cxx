@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::ClipTests {
+namespace fenestra::core::ClipTests {
 using namespace testing_clipping;
 
 namespace {
@@ -93,7 +93,7 @@ TEST(Clip, VisibleIntervalEndsWhereTheWeightChanges) {
     for (const double distance : {12.0, 120.0, 1e5}) {
       const Camera camera = makeObliqueCamera(projection, distance, 96);
       for (const Clip& clip : makeClips(camera))
-        for (int i = 0; i < fenestra::testing::scaleSamples(3000); ++i) {
+        for (int i = 0; i < fenestra::core::testing::scaleSamples(3000); ++i) {
           const Ray ray = camera.makeRay(uniform(random, 0, 96), uniform(random, 0, 96));
           const Interval visible = visibleInterval(clip, ray);
           const double step = 1e-6 * (1.0 + 1e-4 * distance);
@@ -125,7 +125,7 @@ TEST(Clip, BoundsHoldForPointsOfTheBox) {
       const auto clips = makeClips(camera);
       for (std::size_t c = 0; c < clips.size(); ++c) {
         int foundEmpty = 0, empty = 0, foundFull = 0, full = 0;
-        for (int trial = 0; trial < fenestra::testing::scaleSamples(20000); ++trial) {
+        for (int trial = 0; trial < fenestra::core::testing::scaleSamples(20000); ++trial) {
           const Vec3 center = randomPoint(random, -35, 35);
           const Vec3 half =
               Vec3::Constant(0.2) + std::pow(random.uniform(), 4) * randomPoint(random, 0, 20);
@@ -334,4 +334,4 @@ TEST(ClippingSurface, OnePixelFocusGivesAFlatSurface) {
 }
 
 } // namespace
-} // namespace fenestra::ClipTests
+} // namespace fenestra::core::ClipTests

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra::testing_clipping {
+namespace fenestra::core::testing_clipping {
 
 inline double uniform(Random& random, double low, double high) {
   return low + (high - low) * random.uniform();
@@ -85,4 +85,4 @@ inline FocusDepth makeFocusDepth(const std::vector<std::string>& rows) {
   return focus;
 }
 
-} // namespace fenestra::testing_clipping
+} // namespace fenestra::core::testing_clipping

@@ -11,7 +11,7 @@
 #include <random>
 #include <sstream>
 
-namespace fenestra::ClosedSurfaceTests {
+namespace fenestra::core::ClosedSurfaceTests {
 namespace {
 
 using Path = std::filesystem::path;
@@ -234,8 +234,9 @@ TEST(ClosedSurface, SurfaceIsClippedToTheVolume) {
   const Path path = writeSegments(folder, {makeBox(Vec3(-50, 2.5, 2.5), Vec3(50, 4.5, 4.5))});
   EXPECT_EQ(readSegmentation(path, &grid).makeFocusMask({"id0"}, grid).count, 10 * 2 * 2);
   const Path outside = writeSegments(folder, {makeBox(Vec3(50, 50, 50), Vec3(60, 60, 60))});
-  fenestra::expectRefused(outside, "empty-focus",
-                          [&] { readSegmentation(outside, &grid).makeFocusMask({"id0"}, grid); });
+  fenestra::core::expectRefused(outside, "empty-focus", [&] {
+    readSegmentation(outside, &grid).makeFocusMask({"id0"}, grid);
+  });
 }
 
 TEST(ClosedSurface, WithoutAVolumeGetsItsOwnGrid) {
@@ -265,7 +266,7 @@ TEST(ClosedSurface, CrossingsAtEdgesCountOnce) {
 }
 
 void expectRefused(const Path& subject, const Path& path, const std::string& text) {
-  fenestra::expectRefused(subject, text, [&] { readSegmentation(path); });
+  fenestra::core::expectRefused(subject, text, [&] { readSegmentation(path); });
 }
 
 TEST(ClosedSurface, RejectsOpenSurfaces) {
@@ -370,4 +371,4 @@ TEST(ClosedSurface, RejectsRealContours) {
 }
 
 } // namespace
-} // namespace fenestra::ClosedSurfaceTests
+} // namespace fenestra::core::ClosedSurfaceTests

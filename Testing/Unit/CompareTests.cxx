@@ -10,7 +10,7 @@
 
 #include <filesystem>
 
-namespace fenestra::CompareTests {
+namespace fenestra::core::CompareTests {
 namespace {
 
 Image makeConstantImage(int width, int height, float value) {
@@ -277,4 +277,4 @@ TEST(AgreementProbability, RareBrightPathsDoNotDisagree) {
 }
 
 } // namespace
-} // namespace fenestra::CompareTests
+} // namespace fenestra::core::CompareTests

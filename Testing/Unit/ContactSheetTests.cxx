@@ -11,7 +11,7 @@
 #include <set>
 #include <span>
 
-namespace fenestra::ContactSheetTests {
+namespace fenestra::core::ContactSheetTests {
 namespace {
 
 double sumCoverage(const TextBitmap& line) {
@@ -126,4 +126,4 @@ TEST(ContactSheet, AveragesInLinearLight) {
 }
 
 } // namespace
-} // namespace fenestra::ContactSheetTests
+} // namespace fenestra::core::ContactSheetTests

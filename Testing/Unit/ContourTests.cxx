@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-namespace fenestra::ContourTests {
+namespace fenestra::core::ContourTests {
 using namespace testing_clipping;
 
 namespace {
@@ -222,4 +222,4 @@ TEST(ControlPoints, BoundarySamplesAreFocusSamplesWithAnOutsideNeighbor) {
 }
 
 } // namespace
-} // namespace fenestra::ContourTests
+} // namespace fenestra::core::ContourTests

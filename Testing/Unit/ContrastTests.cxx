@@ -10,7 +10,7 @@
 
 #include <numeric>
 
-namespace fenestra::testing::ContrastTests {
+namespace fenestra::core::testing::ContrastTests {
 namespace {
 
 /// Sharma, Wu, Dalal 2005, table 1.
@@ -124,4 +124,4 @@ TEST(Contrast, OfAFocusAndAContextOfSomeSaturation) {
 }
 
 } // namespace
-} // namespace fenestra::testing::ContrastTests
+} // namespace fenestra::core::testing::ContrastTests

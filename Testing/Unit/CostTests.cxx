@@ -16,7 +16,7 @@
 
 #include <sys/wait.h>
 
-namespace fenestra::CostTests {
+namespace fenestra::core::CostTests {
 namespace {
 
 constexpr const char* countsVariable = "FENESTRA_COUNTS"; ///< files written by valgrind
@@ -144,7 +144,7 @@ TEST(Cost, GrowsNoFasterThanNLogN) {
 }
 
 } // namespace
-} // namespace fenestra::CostTests
+} // namespace fenestra::core::CostTests
 #else
 TEST(Cost, GrowsNoFasterThanNLogN) {
   GTEST_SKIP() << "valgrind is not installed";

@@ -8,7 +8,7 @@
 
 #include <thread>
 
-namespace fenestra::testing::CoverageTests {
+namespace fenestra::core::testing::CoverageTests {
 namespace {
 
 /// Cube of 20 mm around the origin, extinction 0.1 per mm, seen from anterior. In every pixel the
@@ -85,4 +85,4 @@ TEST(Render, StopsDuringALongPath) {
 }
 
 } // namespace
-} // namespace fenestra::testing::CoverageTests
+} // namespace fenestra::core::testing::CoverageTests

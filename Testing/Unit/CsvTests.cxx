@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::CsvTests {
+namespace fenestra::core::CsvTests {
 namespace {
 
 using Fields = std::vector<std::string>;
@@ -51,4 +51,4 @@ TEST(Csv, WrittenLinesReadBackUnchanged) {
 }
 
 } // namespace
-} // namespace fenestra::CsvTests
+} // namespace fenestra::core::CsvTests

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::CutGradientTests {
+namespace fenestra::core::CutGradientTests {
 using namespace testing_clipping;
 
 namespace {
@@ -157,4 +157,4 @@ TEST(CutGradient, GivesAHomogeneousMediumASurface) {
 }
 
 } // namespace
-} // namespace fenestra::CutGradientTests
+} // namespace fenestra::core::CutGradientTests

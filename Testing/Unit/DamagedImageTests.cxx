@@ -7,7 +7,7 @@
 
 #include <sys/stat.h>
 
-namespace fenestra::DamagedImageTests {
+namespace fenestra::core::DamagedImageTests {
 using namespace std::string_literals;
 using namespace testing_images;
 
@@ -143,4 +143,4 @@ TEST_F(DamagedFiles, ErrorsPrintNothingToStandardError) {
 }
 
 } // namespace
-} // namespace fenestra::DamagedImageTests
+} // namespace fenestra::core::DamagedImageTests

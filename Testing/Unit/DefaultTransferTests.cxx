@@ -13,7 +13,7 @@
 
 #include <numeric>
 
-namespace fenestra::testing::DefaultTransferTests {
+namespace fenestra::core::testing::DefaultTransferTests {
 namespace {
 
 Volume makeRamp(double low, double high) {
@@ -165,4 +165,4 @@ TEST(DefaultTransfer, NoColorRampInsideATissue) {
 }
 
 } // namespace
-} // namespace fenestra::testing::DefaultTransferTests
+} // namespace fenestra::core::testing::DefaultTransferTests

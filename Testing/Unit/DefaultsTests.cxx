@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::DefaultsTests {
+namespace fenestra::core::testing::DefaultsTests {
 namespace {
 
 Volume makeRamp(double low, double high) {
@@ -189,4 +189,4 @@ TEST(FilmImage, HasEveryDocumentedChannel) {
 }
 
 } // namespace
-} // namespace fenestra::testing::DefaultsTests
+} // namespace fenestra::core::testing::DefaultsTests

@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-namespace fenestra::DenoisingTests {
+namespace fenestra::core::DenoisingTests {
 namespace {
 
 /// Ball of a thin medium in a box of 16^3 voxels: many rays cross it without a collision.
@@ -135,4 +135,4 @@ TEST_F(Denoising, OnePixelWithOneSampleDisablesHalfBuffersButNotFiltering) {
 }
 
 } // namespace
-} // namespace fenestra::DenoisingTests
+} // namespace fenestra::core::DenoisingTests

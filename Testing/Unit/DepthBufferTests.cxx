@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::DepthBufferTests {
+namespace fenestra::core::DepthBufferTests {
 using namespace testing_clipping;
 
 namespace {
@@ -176,4 +176,4 @@ TEST(DepthPyramid, BoundsAreTightOnASmallRectangle) {
 }
 
 } // namespace
-} // namespace fenestra::DepthBufferTests
+} // namespace fenestra::core::DepthBufferTests

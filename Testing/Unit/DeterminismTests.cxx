@@ -2,7 +2,7 @@
 
 #include "FilmTesting.h"
 
-namespace fenestra::testing::DeterminismTests {
+namespace fenestra::core::testing::DeterminismTests {
 namespace {
 
 TEST(Determinism, ThreadsAndPassesChangeNoBit) {
@@ -98,4 +98,4 @@ TEST(Render, DisplayNoiseIsEstimatedAtFixedCountsEqualInAllPixels) {
 }
 
 } // namespace
-} // namespace fenestra::testing::DeterminismTests
+} // namespace fenestra::core::testing::DeterminismTests

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra::dicom {
+namespace fenestra::core::dicom {
 
 struct Element;
 using Item = std::vector<Element>; ///< sorted by tag
@@ -180,4 +180,4 @@ inline std::string makeFile(const Item& elements, Syntax syntax, bool hasLengths
          (syntax == Syntax::deflated ? deflate(data) : data);
 }
 
-} // namespace fenestra::dicom
+} // namespace fenestra::core::dicom

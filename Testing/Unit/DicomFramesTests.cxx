@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace fenestra::DicomFramesTests {
+namespace fenestra::core::DicomFramesTests {
 namespace {
 
 using namespace dicomSlices;
@@ -85,7 +85,7 @@ TEST(DicomFrames, FramesBeyondTheFileAreRefused) {
       makeFrames(4, [](unsigned i) { return Item{makePosition(Vec3(0, 0, i))}; },
                  {makeShared(Mat3::Identity())});
   const Path file = folder.write("frames", bytes.substr(0, bytes.size() - 14));
-  fenestra::expectRefused(file, "damaged-file: PixelData", [&] { read(folder.path()); });
+  fenestra::core::expectRefused(file, "damaged-file: PixelData", [&] { read(folder.path()); });
 }
 
 // ---- voxels
@@ -263,4 +263,4 @@ TEST(StandardUptake, VoxelsOfAPetAreSuv) {
 }
 
 } // namespace
-} // namespace fenestra::DicomFramesTests
+} // namespace fenestra::core::DicomFramesTests

@@ -6,7 +6,7 @@
 
 #include "files/segments/SegmentationReader.h"
 
-namespace fenestra::DicomGeometryTests {
+namespace fenestra::core::DicomGeometryTests {
 namespace {
 
 using namespace dicomSlices;
@@ -134,4 +134,4 @@ TEST(DicomGeometry, StructuresPlaceCornersInAllOrientations) {
 }
 
 } // namespace
-} // namespace fenestra::DicomGeometryTests
+} // namespace fenestra::core::DicomGeometryTests

@@ -5,7 +5,7 @@
 #include "DicomSliceFiles.h"
 #include "Refusals.h"
 
-namespace fenestra::DicomInputTests {
+namespace fenestra::core::DicomInputTests {
 namespace {
 
 using namespace dicomSlices;
@@ -59,4 +59,4 @@ TEST_F(DicomInput, SegmentationOfAnotherFrameOfReferenceWarns) {
 }
 
 } // namespace
-} // namespace fenestra::DicomInputTests
+} // namespace fenestra::core::DicomInputTests

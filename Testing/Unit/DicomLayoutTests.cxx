@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace fenestra::DicomLayoutTests {
+namespace fenestra::core::DicomLayoutTests {
 namespace {
 
 using namespace dicomSlices;
@@ -85,8 +85,8 @@ TEST(DicomLayout, SegmentationsAreNoSeries) {
   const DicomFolder found = findDicomSeries(folder.path());
   EXPECT_EQ(found.series.size(), 1u);
   EXPECT_EQ(found.segmentations.size(), 2u);
-  fenestra::expectRefused(folder / "seg", "segmentation-as-volume",
-                          [&] { findSeriesOfFile(folder / "seg"); });
+  fenestra::core::expectRefused(folder / "seg", "segmentation-as-volume",
+                                [&] { findSeriesOfFile(folder / "seg"); });
 }
 
 TEST(DicomLayout, SegmentationsReferToASeriesOrItsFrame) {
@@ -118,8 +118,8 @@ TEST(DicomLayout, UnsupportedTransferSyntaxesAreNamed) {
   for (const auto& read : std::vector<std::function<void()>>{
            [&] { findDicomSeries(folder.path()); }, [&] { findSeriesOfFile(folder / "a"); },
            [&] { readDicomVolume({folder / "a"}, "x"); }})
-    fenestra::expectRefused(folder / "a", "unsupported-file | HTJ2K | 1.2.840.10008.1.2.4.201",
-                            read);
+    fenestra::core::expectRefused(folder / "a",
+                                  "unsupported-file | HTJ2K | 1.2.840.10008.1.2.4.201", read);
   folder.write("b", makeSlice({}, Syntax::htj2k));
   folder.write("c", makeSlice({.value = 3}));
   const Volume volume = read(folder.path());
@@ -131,8 +131,8 @@ TEST(DicomLayout, UnsupportedTransferSyntaxesAreNamed) {
 TEST(DicomLayout, ObjectsWithoutAScanAreNamed) {
   const TemporaryFolder folder;
   folder.write("a", makeSlice({.more = {makeText(0x00080060, "CS", "RTDOSE")}}));
-  fenestra::expectRefused(folder / "a", "unsupported-file | RT Dose",
-                          [&] { findSeriesOfFile(folder / "a"); });
+  fenestra::core::expectRefused(folder / "a", "unsupported-file | RT Dose",
+                                [&] { findSeriesOfFile(folder / "a"); });
 }
 
 TEST(DicomLayout, ADirectoryFileStandsForItsFolder) {
@@ -222,7 +222,7 @@ TEST(DicomLayout, MosaicsAreRefused) {
   const TemporaryFolder folder;
   folder.write("a",
                makeSlice({.more = {makeText(0x00080008, "CS", "ORIGINAL\\PRIMARY\\M\\MOSAIC")}}));
-  fenestra::expectRefused(folder / "a", "unsupported-file", [&] { read(folder.path()); });
+  fenestra::core::expectRefused(folder / "a", "unsupported-file", [&] { read(folder.path()); });
 }
 
 // ---- several volumes in a series
@@ -244,8 +244,9 @@ TEST(DicomLayout, EchoesAreVolumesWithNames) {
   writeRepeated(folder, 2, [](int k) {
     return std::vector{makeDecimals(0x00180081, std::vector{k == 0 ? 2.46 : 4.92})};
   });
-  fenestra::expectRefused(folder.path(), "ambiguous-volume | 2 DICOM | echo 2.46 ms | echo 4.92 ms",
-                          [&] { read(folder.path()); });
+  fenestra::core::expectRefused(folder.path(),
+                                "ambiguous-volume | 2 DICOM | echo 2.46 ms | echo 4.92 ms",
+                                [&] { read(folder.path()); });
   EXPECT_EQ(getScalars(read(folder.path(), {.name = "echo 4.92 ms"})),
             (std::vector{10.0, 11.0, 12.0}));
   EXPECT_EQ(getScalars(read(folder.path(), {.name = "4 echo 2.46 ms"})),
@@ -283,8 +284,8 @@ TEST(DicomLayout, TimesAreFramesInTheirOrder) {
     EXPECT_EQ(countWarnings(first, ErrorCode::assumedFrame), 1u);
     EXPECT_EQ(getScalars(read(folder->path(), {.frame = 2})), (std::vector{20.0, 21.0, 22.0}));
   }
-  fenestra::expectRefused(unnamed.path(), "unknown-frame",
-                          [&] { read(unnamed.path(), {.frame = 3}); });
+  fenestra::core::expectRefused(unnamed.path(), "unknown-frame",
+                                [&] { read(unnamed.path(), {.frame = 3}); });
 }
 
 TEST(DicomLayout, AnAbortedLastTimeIsLeftOut) {
@@ -377,8 +378,8 @@ TEST(DicomLayout, KernelsAreVolumes) {
   writeRepeated(folder, 2, [](int k) {
     return std::vector{makeText(0x00181210, "SH", k == 0 ? "B30f" : "I70f\\2")};
   });
-  fenestra::expectRefused(folder.path(), "ambiguous-volume | kernel B30f | kernel I70f/2",
-                          [&] { read(folder.path()); });
+  fenestra::core::expectRefused(folder.path(), "ambiguous-volume | kernel B30f | kernel I70f/2",
+                                [&] { read(folder.path()); });
   EXPECT_EQ(getScalars(read(folder.path(), {.name = "kernel I70f/2"})),
             (std::vector{10.0, 11.0, 12.0}));
 }
@@ -399,8 +400,8 @@ TEST(DicomLayout, AKeyThatVariesFromSliceToSliceDividesNothing) {
 TEST(DicomLayout, SlicesAtOnePositionThatNothingDistinguishesAreRefused) {
   const TemporaryFolder folder;
   writeDepths(folder, {0, 2, 4, 2});
-  fenestra::expectRefused(folder / "1", "invalid-field: ImagePositionPatient | 3",
-                          [&] { read(folder.path()); });
+  fenestra::core::expectRefused(folder / "1", "invalid-field: ImagePositionPatient | 3",
+                                [&] { read(folder.path()); });
 }
 
 // ---- incomplete and uneven series
@@ -433,8 +434,8 @@ TEST(DicomLayout, UnevenSlicesAreResampledAtTheSmallestDistance) {
 TEST(DicomLayout, AGapTooLargeToFillIsRefused) {
   const TemporaryFolder folder;
   writeDepths(folder, {0, 1, 2, 300});
-  fenestra::expectRefused(folder / "2", "invalid-field: ImagePositionPatient | 298 mm",
-                          [&] { read(folder.path()); });
+  fenestra::core::expectRefused(folder / "2", "invalid-field: ImagePositionPatient | 298 mm",
+                                [&] { read(folder.path()); });
 }
 
 TEST(DicomLayout, DeflatedSlicesAreRead) {
@@ -444,4 +445,4 @@ TEST(DicomLayout, DeflatedSlicesAreRead) {
 }
 
 } // namespace
-} // namespace fenestra::DicomLayoutTests
+} // namespace fenestra::core::DicomLayoutTests

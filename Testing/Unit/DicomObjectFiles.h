@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// SEG or label map, LPS mm.
 struct SegFile {
@@ -196,4 +196,4 @@ inline std::string makeStructureFile(const std::vector<RoiFile>& rois,
                   syntax);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

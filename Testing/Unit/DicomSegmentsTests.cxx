@@ -9,7 +9,7 @@
 #include <random>
 #include <sys/resource.h>
 
-namespace fenestra::DicomSegmentsTests {
+namespace fenestra::core::DicomSegmentsTests {
 namespace {
 
 using Path = std::filesystem::path;
@@ -317,4 +317,4 @@ TEST(DicomSegments, DeclaredLengthsTakeNoMemoryInTheChild) {
 #endif
 
 } // namespace
-} // namespace fenestra::DicomSegmentsTests
+} // namespace fenestra::core::DicomSegmentsTests

@@ -16,7 +16,7 @@
 
 #include <random>
 
-namespace fenestra::DicomSeriesTests {
+namespace fenestra::core::DicomSeriesTests {
 namespace {
 
 using Path = std::filesystem::path;
@@ -172,10 +172,10 @@ TEST(DicomSeries, DecodesJpeg2000AndRejectsDamagedStreams) {
   wider[wider.find("\xff\x4f\xff\x51") + 8] = 1;
   folder.write("wider.dcm", wider);
   const Path truncated = folder.write("half.dcm", bytes.substr(0, bytes.size() - 40));
-  fenestra::expectRefused(truncated, "damaged-file: PixelData",
-                          [&] { readDicomVolume({truncated}, "x"); });
-  fenestra::expectRefused(folder / "wider.dcm", "damaged-file: PixelData",
-                          [&] { readDicomVolume({folder / "wider.dcm"}, "x"); });
+  fenestra::core::expectRefused(truncated, "damaged-file: PixelData",
+                                [&] { readDicomVolume({truncated}, "x"); });
+  fenestra::core::expectRefused(folder / "wider.dcm", "damaged-file: PixelData",
+                                [&] { readDicomVolume({folder / "wider.dcm"}, "x"); });
 }
 
 TEST(DicomSeries, EveryTransferSyntaxGivesTheSameVoxels) {
@@ -230,13 +230,13 @@ TEST(DicomSeries, SelectorChoosesAmongSeries) {
   EXPECT_EQ(choose("1.2.4").files().size(), 3u);
   EXPECT_EQ(choose("8").files().size(), 4u);
   EXPECT_EQ(choose("head").files().size(), 2u);
-  fenestra::expectRefused(
+  fenestra::core::expectRefused(
       folder.path(), "ambiguous-volume | 3 DICOM | number 7 \"head\" CT 1.2.3 (2 slices); number 8",
       [&] { choose(std::nullopt); });
-  fenestra::expectRefused(folder.path(), "ambiguous-name | \"neck\" | number 8",
-                          [&] { choose("neck"); });
-  fenestra::expectRefused(folder.path(), "unknown-name | \"foot\" | number 8",
-                          [&] { choose("foot"); });
+  fenestra::core::expectRefused(folder.path(), "ambiguous-name | \"neck\" | number 8",
+                                [&] { choose("neck"); });
+  fenestra::core::expectRefused(folder.path(), "unknown-name | \"foot\" | number 8",
+                                [&] { choose("foot"); });
 }
 
 TEST(DicomSeries, SearchesSubfolders) {
@@ -251,7 +251,7 @@ TEST(DicomSeries, SearchesSubfolders) {
 }
 
 void expectRefused(const Path& subject, const Path& folder, const std::string& expected) {
-  fenestra::expectRefused(subject, expected, [&] { readSingleSeries(folder); });
+  fenestra::core::expectRefused(subject, expected, [&] { readSingleSeries(folder); });
 }
 
 /// Writes slices at these depths, in files 0.dcm, 1.dcm, ...
@@ -290,13 +290,13 @@ TEST(DicomSeries, RejectsFilesThatAreNotGraySlices) {
   const TemporaryFolder folder;
   const Path colored = write(folder / "rgb.dcm", {.components = 3});
   const auto read = [](const Path& file) { return [file] { readDicomVolume({file}, "x"); }; };
-  fenestra::expectRefused(colored, "invalid-field: PhotometricInterpretation", read(colored));
+  fenestra::core::expectRefused(colored, "invalid-field: PhotometricInterpretation", read(colored));
   const std::string bytes = readBytes(write(folder / "a.dcm", {}));
   const auto expect = [&](const std::string& tag, const std::string& value, const char* text) {
     std::string changed = bytes;
     overwriteElement(changed, tag, value);
     const Path file = folder.write("changed.dcm", changed);
-    fenestra::expectRefused(file, text, read(file));
+    fenestra::core::expectRefused(file, text, read(file));
   };
   using namespace std::string_literals;
   expect("\x28\0\x10\0"s, "\xff\xff", "invalid-field: PixelData");
@@ -308,11 +308,11 @@ TEST(DicomSeries, RejectsFilesThatAreNotGraySlices) {
   expect("\x20\0\x32\0"s, "x", "invalid-field: ImagePositionPatient or ImageOrientationPatient");
   expect("\x20\0\x37\0"s, "1\\1", "invalid-field: ImageOrientationPatient");
   const Path truncated = folder.write("half.dcm", bytes.substr(0, bytes.size() - 10));
-  fenestra::expectRefused(truncated, "damaged-file", read(truncated));
+  fenestra::core::expectRefused(truncated, "damaged-file", read(truncated));
   const Path none = folder.write("none.dcm", "what");
-  fenestra::expectRefused(none, "unsupported-file", read(none));
-  fenestra::expectRefused(folder / "absent", "unreadable-file",
-                          [&] { findDicomSeries(folder / "absent"); });
+  fenestra::core::expectRefused(none, "unsupported-file", read(none));
+  fenestra::core::expectRefused(folder / "absent", "unreadable-file",
+                                [&] { findDicomSeries(folder / "absent"); });
 }
 
 /// Damaged bytes must be read, or rejected with a message of one line.
@@ -409,4 +409,4 @@ TEST(DicomSeries, StreamThatCrashesTheDecoderIsReadOrRejected) {
 }
 
 } // namespace
-} // namespace fenestra::DicomSeriesTests
+} // namespace fenestra::core::DicomSeriesTests

@@ -7,7 +7,7 @@
 
 #include <functional>
 
-namespace fenestra::dicomSlices {
+namespace fenestra::core::dicomSlices {
 
 using Path = std::filesystem::path;
 using dicom::Element;
@@ -161,4 +161,4 @@ inline Element makeShared(const Mat3& axes) {
                                                makeDecimals(0x00281053, std::vector{2.0})}})}});
 }
 
-} // namespace fenestra::dicomSlices
+} // namespace fenestra::core::dicomSlices

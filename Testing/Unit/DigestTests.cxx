@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace fenestra::testing::DigestTests {
+namespace fenestra::core::testing::DigestTests {
 namespace {
 
 std::uint64_t digestInSteps(const std::string& text, std::size_t step) {
@@ -47,4 +47,4 @@ TEST(Digest, MissingFileIsRejected) {
 }
 
 } // namespace
-} // namespace fenestra::testing::DigestTests
+} // namespace fenestra::core::testing::DigestTests

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <limits>
 
-namespace fenestra::DisplayTransformTests {
+namespace fenestra::core::DisplayTransformTests {
 namespace {
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
@@ -282,4 +282,4 @@ TEST(ToDisplay, TransparentIsBlackAndAlphaIsClampedTo0To1) {
   EXPECT_EQ(toDisplay({0.4f, 0.2f, 0.1f, 1.5f}, {photographic})[3], 1.0f);
 }
 
-} // namespace fenestra::DisplayTransformTests
+} // namespace fenestra::core::DisplayTransformTests

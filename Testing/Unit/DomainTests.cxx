@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::DomainTests {
+namespace fenestra::core::testing::DomainTests {
 namespace {
 
 double uniform(Random& random, double low, double high) {
@@ -155,4 +155,4 @@ TEST(Domain, CropOutsideTheGridIsEmpty) {
 }
 
 } // namespace
-} // namespace fenestra::testing::DomainTests
+} // namespace fenestra::core::testing::DomainTests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::EmptyPixelsTests {
+namespace fenestra::core::testing::EmptyPixelsTests {
 namespace {
 
 /// Small opaque ball off the center of an empty box, rotated against the view.
@@ -97,4 +97,4 @@ TEST(EmptyPixels, ImageThatHitsNothingHasOnlyEmptyPixels) {
 }
 
 } // namespace
-} // namespace fenestra::testing::EmptyPixelsTests
+} // namespace fenestra::core::testing::EmptyPixelsTests

@@ -14,7 +14,7 @@
 #include <regex>
 #include <set>
 
-namespace fenestra::ErrorAdviceTests {
+namespace fenestra::core::ErrorAdviceTests {
 namespace {
 
 std::vector<ErrorCode> listCodes() {
@@ -92,4 +92,4 @@ TEST(UsageError, SubjectEndsAtTheFirstColon) {
 }
 
 } // namespace
-} // namespace fenestra::ErrorAdviceTests
+} // namespace fenestra::core::ErrorAdviceTests

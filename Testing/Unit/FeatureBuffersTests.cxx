@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::FeatureBuffersTests {
+namespace fenestra::core::testing::FeatureBuffersTests {
 namespace {
 
 FeatureBuffers renderFeatures(const TestScene& s) {
@@ -220,4 +220,4 @@ TEST(FeatureBuffers, CroppedImageEqualsTheSamePartOfTheCompleteImage) {
 }
 
 } // namespace
-} // namespace fenestra::testing::FeatureBuffersTests
+} // namespace fenestra::core::testing::FeatureBuffersTests

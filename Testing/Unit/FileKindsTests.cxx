@@ -12,7 +12,7 @@
 
 #include <random>
 
-namespace fenestra::FileKindsTests {
+namespace fenestra::core::FileKindsTests {
 namespace {
 
 void expectVolume(const Volume& volume, const NiftiFile& file, const Affine& map) {
@@ -144,9 +144,10 @@ TEST(FileKinds, DamagedFilesAreRefusedOrRead) {
                                     {"v.mgz", makeMgh(file, Affine::Identity())},
                                     {"p.hdr", pair.header}}) {
     EXPECT_TRUE(read(name, bytes)) << name;
-    for (std::size_t size = 0; size < bytes.size(); size += fenestra::testing::isLongRun() ? 1 : 7)
+    for (std::size_t size = 0; size < bytes.size();
+         size += fenestra::core::testing::isLongRun() ? 1 : 7)
       EXPECT_FALSE(read(name, bytes.substr(0, size))) << name << " of " << size << " bytes";
-    const int flips = fenestra::testing::scaleSamples(250);
+    const int flips = fenestra::core::testing::scaleSamples(250);
     for (int i = 0; i < flips; ++i) {
       std::string damaged = bytes;
       for (auto n = 1 + random() % 3; n > 0; --n)
@@ -157,4 +158,4 @@ TEST(FileKinds, DamagedFilesAreRefusedOrRead) {
 }
 
 } // namespace
-} // namespace fenestra::FileKindsTests
+} // namespace fenestra::core::FileKindsTests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 inline void expectIdentical(const Film& a, const Film& b) {
   ASSERT_EQ(a.width(), b.width());
@@ -48,4 +48,4 @@ inline TestScene makeWavyScene(int width = 33, int height = 21) {
   return s;
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::FilmTests {
+namespace fenestra::core::testing::FilmTests {
 namespace {
 
 TEST(PixelSums, MeanAndStandardErrorEqualTwoPasses) {
@@ -126,4 +126,4 @@ TEST(Film, NoiseFollowsItsDefinition) {
 }
 
 } // namespace
-} // namespace fenestra::testing::FilmTests
+} // namespace fenestra::core::testing::FilmTests

@@ -14,7 +14,7 @@
 #include <functional>
 #include <iostream>
 
-namespace fenestra::testing::FilterTests {
+namespace fenestra::core::testing::FilterTests {
 namespace {
 
 /// Image of three bands and waves: a linear function of its features, plus `unexplained` times a
@@ -307,4 +307,4 @@ TEST(Filter, ImageWithoutFeaturesIsFilteredByMeans) {
 }
 
 } // namespace
-} // namespace fenestra::testing::FilterTests
+} // namespace fenestra::core::testing::FilterTests

@@ -11,7 +11,7 @@
 
 #include <optional>
 
-namespace fenestra::FocusDepthTests {
+namespace fenestra::core::FocusDepthTests {
 using namespace testing_clipping;
 using testing::reduceSamples;
 
@@ -405,4 +405,4 @@ TEST(FocusDepth, DistantCameraKeepsThePrecision) {
 }
 
 } // namespace
-} // namespace fenestra::FocusDepthTests
+} // namespace fenestra::core::FocusDepthTests

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::FootprintsTests {
+namespace fenestra::core::FootprintsTests {
 using namespace testing_clipping;
 
 namespace {
@@ -75,4 +75,4 @@ TEST(Footprints, DepthBoundsContainTheFocusForAnyRequestedCells) {
 }
 
 } // namespace
-} // namespace fenestra::FootprintsTests
+} // namespace fenestra::core::FootprintsTests

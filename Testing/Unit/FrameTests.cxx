@@ -10,7 +10,7 @@
 
 #include <numeric>
 
-namespace fenestra::FrameTests {
+namespace fenestra::core::FrameTests {
 namespace {
 
 constexpr std::size_t frames = 5, voxels = 24;
@@ -239,4 +239,4 @@ TEST(Frames, ColorsAndComplexNumbersAreNoFrames) {
 }
 
 } // namespace
-} // namespace fenestra::FrameTests
+} // namespace fenestra::core::FrameTests

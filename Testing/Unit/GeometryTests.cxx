@@ -7,7 +7,7 @@
 
 #include "files/medical/VolumeReader.h"
 
-namespace fenestra::GeometryTests {
+namespace fenestra::core::GeometryTests {
 namespace {
 
 using Path = std::filesystem::path;
@@ -125,4 +125,4 @@ TEST(Geometry, AnalyzeCornersAreCenteredTowardLeftAnteriorSuperior) {
 }
 
 } // namespace
-} // namespace fenestra::GeometryTests
+} // namespace fenestra::core::GeometryTests

@@ -8,7 +8,7 @@
 
 #include <set>
 
-namespace fenestra::GridWalkTests {
+namespace fenestra::core::GridWalkTests {
 using testing::reduceSamples;
 
 namespace {
@@ -206,4 +206,4 @@ TEST(GridWalk, FarOriginsKeepTheirCellsToRounding) {
 }
 
 } // namespace
-} // namespace fenestra::GridWalkTests
+} // namespace fenestra::core::GridWalkTests

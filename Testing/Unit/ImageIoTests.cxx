@@ -19,7 +19,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace fenestra::ImageIoTests {
+namespace fenestra::core::ImageIoTests {
 using namespace std::string_literals;
 using namespace testing_images;
 
@@ -291,4 +291,4 @@ TEST_F(ImageFiles, ReferenceImageIsRead) {
 }
 
 } // namespace
-} // namespace fenestra::ImageIoTests
+} // namespace fenestra::core::ImageIoTests

@@ -10,7 +10,7 @@
 
 #include <cstring>
 
-namespace fenestra::ImageStackTests {
+namespace fenestra::core::ImageStackTests {
 namespace {
 
 constexpr std::size_t columns = 4, rows = 3, slices = 3;
@@ -272,4 +272,4 @@ TEST(ImageStack, BothKindsOrOneSliceAreRefused) {
 }
 
 } // namespace
-} // namespace fenestra::ImageStackTests
+} // namespace fenestra::core::ImageStackTests

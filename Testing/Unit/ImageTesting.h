@@ -12,7 +12,7 @@
 
 #include <unistd.h>
 
-namespace fenestra::testing_images {
+namespace fenestra::core::testing_images {
 namespace fs = std::filesystem;
 
 inline std::string readContent(const fs::path& path) {
@@ -67,4 +67,4 @@ protected:
   fs::path m_folder;
 };
 
-} // namespace fenestra::testing_images
+} // namespace fenestra::core::testing_images

@@ -5,7 +5,7 @@
 
 #include "SceneTesting.h"
 
-namespace fenestra::InputTests {
+namespace fenestra::core::InputTests {
 namespace {
 
 /// Archive with a CT, a label map on the same grid, and a volume property.
@@ -164,4 +164,4 @@ TEST(InlineJson, BraceDistinguishesJsonFromNames) {
 }
 
 } // namespace
-} // namespace fenestra::InputTests
+} // namespace fenestra::core::InputTests

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::IslandsTests {
+namespace fenestra::core::testing::IslandsTests {
 namespace {
 
 /// Islands of less than `most` voxels by flood fill: the volume with their voxels lowered.
@@ -108,4 +108,4 @@ TEST(Islands, OfIntegersAreLoweredToTransparentValues) {
 }
 
 } // namespace
-} // namespace fenestra::testing::IslandsTests
+} // namespace fenestra::core::testing::IslandsTests

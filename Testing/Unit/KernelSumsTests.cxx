@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
-namespace fenestra::KernelSumsTests {
+namespace fenestra::core::KernelSumsTests {
 using namespace testing_clipping;
 
 namespace {
@@ -77,4 +77,4 @@ TEST(KernelSums, PolynomialEqualsHornersScheme) {
 }
 
 } // namespace
-} // namespace fenestra::KernelSumsTests
+} // namespace fenestra::core::KernelSumsTests

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace fenestra;
+using namespace fenestra::core;
 
 namespace {
 

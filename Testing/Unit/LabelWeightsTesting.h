@@ -4,7 +4,7 @@
 #include "Support.h"
 #include "base/Random.h"
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Box of a labelmap with value(voxel) (0 to 255) in each voxel; `first` is its first voxel.
 template <typename Value>
@@ -79,4 +79,4 @@ double computeRmsDifference(const Film& a, const Film& b, const Value& value) {
   return std::sqrt(sum / (3.0 * static_cast<double>(a.pixelCount())));
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

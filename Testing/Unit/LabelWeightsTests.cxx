@@ -7,7 +7,7 @@
 
 #include <map>
 
-namespace fenestra::testing::LabelWeightsTests {
+namespace fenestra::core::testing::LabelWeightsTests {
 namespace {
 
 using WeightMap = std::map<int, double>;
@@ -199,4 +199,4 @@ TEST(Tint, ChangesOnlyColors) {
 }
 
 } // namespace
-} // namespace fenestra::testing::LabelWeightsTests
+} // namespace fenestra::core::testing::LabelWeightsTests

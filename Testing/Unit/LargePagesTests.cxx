@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-using namespace fenestra;
+using namespace fenestra::core;
 
 namespace {
 

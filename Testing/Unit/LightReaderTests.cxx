@@ -9,7 +9,7 @@
 
 #include "Refusals.h"
 
-namespace fenestra::LightReaderTests {
+namespace fenestra::core::LightReaderTests {
 namespace {
 
 TEST(LightReader, ReadsEveryKind) {
@@ -247,4 +247,4 @@ TEST(LightReader, ReadsLightsOfTheReference) {
 }
 
 } // namespace
-} // namespace fenestra::LightReaderTests
+} // namespace fenestra::core::LightReaderTests

@@ -2,7 +2,7 @@
 
 #include "Histogram.h"
 
-namespace fenestra::testing::LightSetTests {
+namespace fenestra::core::testing::LightSetTests {
 namespace {
 
 const Grid grid(Size3(10, 10, 10), Affine::Identity());
@@ -285,4 +285,4 @@ TEST(LightSet, WithoutLightsNothingIsSampled) {
 }
 
 } // namespace
-} // namespace fenestra::testing::LightSetTests
+} // namespace fenestra::core::testing::LightSetTests

@@ -6,7 +6,7 @@
 #include "Refusals.h"
 #include "SyntheticChest.h"
 
-namespace fenestra::LungSegmentTests {
+namespace fenestra::core::LungSegmentTests {
 namespace {
 
 /// Files of a chest, and a request that shows its lungs.
@@ -74,4 +74,4 @@ TEST(StrictRequest, RefusesAssumptions) {
 }
 
 } // namespace
-} // namespace fenestra::LungSegmentTests
+} // namespace fenestra::core::LungSegmentTests

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::LungsTests {
+namespace fenestra::core::LungsTests {
 namespace {
 
 /// Fraction of the cells in a region that are lung.
@@ -74,4 +74,4 @@ TEST(Lungs, AreNotFoundInAVolumeOfOneVoxel) {
 }
 
 } // namespace
-} // namespace fenestra::LungsTests
+} // namespace fenestra::core::LungsTests

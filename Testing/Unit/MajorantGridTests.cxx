@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::MajorantGridTests {
+namespace fenestra::core::testing::MajorantGridTests {
 namespace {
 
 ScalarFunction::Knot knot(double s, double y) {
@@ -212,4 +212,4 @@ TEST(MinMaxGrid, CellsSpanAtLeastOneVoxel) {
 }
 
 } // namespace
-} // namespace fenestra::testing::MajorantGridTests
+} // namespace fenestra::core::testing::MajorantGridTests

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace fenestra::MaskFolderTests {
+namespace fenestra::core::MaskFolderTests {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -197,4 +197,4 @@ TEST(MaskFolder, SurfaceOfProbabilitiesIsAtOneHalf) {
 }
 
 } // namespace
-} // namespace fenestra::MaskFolderTests
+} // namespace fenestra::core::MaskFolderTests

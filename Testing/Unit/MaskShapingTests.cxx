@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::MaskShapingTests {
+namespace fenestra::core::MaskShapingTests {
 using namespace testing_clipping;
 
 namespace {
@@ -326,4 +326,4 @@ TEST(MaskShaping, MarginsApplyPerSegment) {
 }
 
 } // namespace
-} // namespace fenestra::MaskShapingTests
+} // namespace fenestra::core::MaskShapingTests

@@ -8,7 +8,7 @@
 
 #include <set>
 
-namespace fenestra::MaterialReaderTests {
+namespace fenestra::core::MaterialReaderTests {
 namespace {
 
 constexpr const char* organs = R"({"version": 1,
@@ -253,4 +253,4 @@ TEST(MaterialReader, ReadsLibrary) {
 }
 
 } // namespace
-} // namespace fenestra::MaterialReaderTests
+} // namespace fenestra::core::MaterialReaderTests

@@ -5,7 +5,7 @@
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 
-namespace fenestra {
+namespace fenestra::core {
 
 template <typename T>
 void writeFile(const std::filesystem::path& path, const std::vector<T>& samples,
@@ -67,4 +67,4 @@ template void writeFile(const std::filesystem::path&, const std::vector<float>&,
 template void writeFile(const std::filesystem::path&, const std::vector<double>&,
                         const FileGeometry&);
 
-} // namespace fenestra
+} // namespace fenestra::core

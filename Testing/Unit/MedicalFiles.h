@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 template <typename T>
 std::string rawBytes(const std::vector<T>& samples) {
@@ -45,4 +45,4 @@ template <typename T>
 void writeFile(const std::filesystem::path& path, const std::vector<T>& samples,
                const FileGeometry& geometry = {});
 
-} // namespace fenestra
+} // namespace fenestra::core

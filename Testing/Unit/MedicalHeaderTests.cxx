@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-namespace fenestra::MedicalHeaderTests {
+namespace fenestra::core::MedicalHeaderTests {
 namespace {
 
 using Path = std::filesystem::path;
@@ -143,4 +143,4 @@ TEST_F(MedicalHeaders, ErrorNamesFieldAndCause) {
 }
 
 } // namespace
-} // namespace fenestra::MedicalHeaderTests
+} // namespace fenestra::core::MedicalHeaderTests

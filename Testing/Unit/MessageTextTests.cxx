@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::MessageTextTests {
+namespace fenestra::core::MessageTextTests {
 namespace {
 
 TEST(MessageText, IsValidUtf8OnOneLine) {
@@ -47,4 +47,4 @@ TEST(MessageText, ReplaceAllReplacesEveryOccurrence) {
 }
 
 } // namespace
-} // namespace fenestra::MessageTextTests
+} // namespace fenestra::core::MessageTextTests

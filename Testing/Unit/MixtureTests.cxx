@@ -9,7 +9,7 @@
 
 #include <map>
 
-namespace fenestra::testing::MixtureTests {
+namespace fenestra::core::testing::MixtureTests {
 namespace {
 
 Component makeComponent(double extinction, const Rgb& albedo, double g = 0.0) {
@@ -172,4 +172,4 @@ TEST(Mixture, InterfaceSurfacesRequireScalarIntegrator) {
 }
 
 } // namespace
-} // namespace fenestra::testing::MixtureTests
+} // namespace fenestra::core::testing::MixtureTests

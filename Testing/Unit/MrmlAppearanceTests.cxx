@@ -2,7 +2,7 @@
 
 #include "SceneTesting.h"
 
-namespace fenestra::MrmlAppearanceTests {
+namespace fenestra::core::MrmlAppearanceTests {
 namespace {
 
 const MrmlNode& findNode(const MrmlScene& scene, const std::string& id) {
@@ -86,4 +86,4 @@ TEST(MrmlAppearance, DisplayWindowBecomesOpacityRamp) {
 }
 
 } // namespace
-} // namespace fenestra::MrmlAppearanceTests
+} // namespace fenestra::core::MrmlAppearanceTests

@@ -2,7 +2,7 @@
 
 #include "SceneTesting.h"
 
-namespace fenestra::MrmlDocumentTests {
+namespace fenestra::core::MrmlDocumentTests {
 namespace {
 
 MrmlDocument parse(const std::string& nodes) {
@@ -134,4 +134,4 @@ TEST(MrmlDocument, DeepNestingIsReadOrRefused) {
 }
 
 } // namespace
-} // namespace fenestra::MrmlDocumentTests
+} // namespace fenestra::core::MrmlDocumentTests

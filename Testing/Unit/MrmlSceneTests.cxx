@@ -3,7 +3,7 @@
 #include "Approx.h"
 #include "SceneTesting.h"
 
-namespace fenestra::MrmlSceneTests {
+namespace fenestra::core::MrmlSceneTests {
 namespace {
 
 const MrmlNode& findNode(const MrmlScene& scene, const std::string& id) {
@@ -404,4 +404,4 @@ TEST(RealScenes, TransformFileMatchesMatrixToSixDigits) {
 }
 
 } // namespace
-} // namespace fenestra::MrmlSceneTests
+} // namespace fenestra::core::MrmlSceneTests

@@ -3,7 +3,7 @@
 #include "Approx.h"
 #include "SceneTesting.h"
 
-namespace fenestra::MrmlTransformTests {
+namespace fenestra::core::MrmlTransformTests {
 namespace {
 
 const MrmlNode& findNode(const MrmlScene& scene, const std::string& id) {
@@ -112,4 +112,4 @@ TEST(MrmlTransform, RefusesPositionsBeyondInvertibleRange) {
 }
 
 } // namespace
-} // namespace fenestra::MrmlTransformTests
+} // namespace fenestra::core::MrmlTransformTests

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-namespace fenestra::NativeGridTests {
+namespace fenestra::core::NativeGridTests {
 namespace {
 
 using LabelAt = std::function<int(const Vec3&)>;
@@ -80,4 +80,4 @@ TEST(NativeGrid, OfLabelsFromTwoGridsIsTheFinerOne) {
 }
 
 } // namespace
-} // namespace fenestra::NativeGridTests
+} // namespace fenestra::core::NativeGridTests

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct NiftiFile {
   std::array<std::int16_t, 3> size = {3, 4, 2};
@@ -128,4 +128,4 @@ NiftiFile makeReordered(const Size3& size, const Vec3& spacing, const Vec3& orig
   return file;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <numeric>
 
-using namespace fenestra;
+using namespace fenestra::core;
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Bytes of numbers in a byte order.
 class Bytes {
@@ -95,4 +95,4 @@ inline Pair makePair(const NiftiFile& file, const std::string& magic) {
   return pair;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

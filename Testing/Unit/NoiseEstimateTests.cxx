@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::NoiseEstimateTests {
+namespace fenestra::core::testing::NoiseEstimateTests {
 namespace {
 
 const Grid slices = makeScaledGrid({60, 60, 20}, {0.9, 0.9, 2.5});
@@ -83,4 +83,4 @@ TEST(NoiseEstimate, IsZeroForTooFewVoxels) {
 }
 
 } // namespace
-} // namespace fenestra::testing::NoiseEstimateTests
+} // namespace fenestra::core::testing::NoiseEstimateTests

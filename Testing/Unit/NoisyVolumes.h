@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Standard normal number of a voxel.
 inline double normalNoise(std::uint64_t seed, const Size3& voxel) {
@@ -42,4 +42,4 @@ const LargeArray<Voxel>& voxelsOf(const Volume& volume) {
   return std::get<LargeArray<Voxel>>(volume.voxels);
 }
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-namespace fenestra::testing::NonLocalMeansTests {
+namespace fenestra::core::testing::NonLocalMeansTests {
 namespace {
 
 /// The definition in NonLocalMeans.h, voxel by voxel.
@@ -186,4 +186,4 @@ TEST(NonLocalMeans, ExtremeNumbersStayFiniteAndInRange) {
 }
 
 } // namespace
-} // namespace fenestra::testing::NonLocalMeansTests
+} // namespace fenestra::core::testing::NonLocalMeansTests

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::OrganMarginTests {
+namespace fenestra::core::OrganMarginTests {
 using namespace testing_clipping;
 
 namespace {
@@ -375,4 +375,4 @@ TEST_F(OrganMarginScene, OnlyForCt) {
 }
 
 } // namespace
-} // namespace fenestra::OrganMarginTests
+} // namespace fenestra::core::OrganMarginTests

@@ -8,7 +8,7 @@
 #include "Refusals.h"
 #include "Support.h"
 
-namespace fenestra::OrganPresetsTests {
+namespace fenestra::core::OrganPresetsTests {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -173,4 +173,4 @@ TEST(OrganPresets, RobustRangeLiesBetweenPercentiles) {
 }
 
 } // namespace
-} // namespace fenestra::OrganPresetsTests
+} // namespace fenestra::core::OrganPresetsTests

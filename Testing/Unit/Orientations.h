@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Unit axes (columns): axial, sagittal, coronal and oblique; each right- and left-handed.
 inline std::vector<std::pair<std::string, Mat3>> listOrientations() {
@@ -52,4 +52,4 @@ inline void expectCorners(const Volume& volume, const std::function<Vec3(int)>& 
   EXPECT_EQ(found, (std::multiset{0, 1, 2, 3, 4, 5, 6, 7}));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::OuterLayerTests {
+namespace fenestra::core::OuterLayerTests {
 using namespace testing_clipping;
 
 namespace {
@@ -120,4 +120,4 @@ TEST(OuterLayer, ResamplesOnLatticeOfLabels) {
 }
 
 } // namespace
-} // namespace fenestra::OuterLayerTests
+} // namespace fenestra::core::OuterLayerTests

@@ -19,7 +19,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace fenestra::OutputsTests {
+namespace fenestra::core::OutputsTests {
 namespace {
 
 namespace fs = std::filesystem;
@@ -417,4 +417,4 @@ TEST(PrivateFolders, FolderIsRemovedWithContent) {
 }
 
 } // namespace
-} // namespace fenestra::OutputsTests
+} // namespace fenestra::core::OutputsTests

@@ -6,7 +6,7 @@
 
 #include <numeric>
 
-namespace fenestra::PackedMaskTests {
+namespace fenestra::core::PackedMaskTests {
 namespace {
 
 /// Mask with rows of zeros, of one value, of distinct values, and of runs of 1 to 300 voxels.
@@ -57,4 +57,4 @@ TEST(PackedMask, UnpacksEveryRow) {
 }
 
 } // namespace
-} // namespace fenestra::PackedMaskTests
+} // namespace fenestra::core::PackedMaskTests

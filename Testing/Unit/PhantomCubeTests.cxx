@@ -4,7 +4,7 @@
 #include "Approx.h"
 #include <gtest/gtest.h>
 
-namespace fenestra::PhantomCubeTests {
+namespace fenestra::core::PhantomCubeTests {
 namespace {
 
 const LargeArray<std::int16_t>& getVoxels(const Phantom& phantom) {
@@ -74,4 +74,4 @@ TEST(PhantomCube, RefusesSizesAndEdgesOutOfRange) {
   EXPECT_THROW(makeCubePhantom({infinity, 16}), Error);
 }
 
-} // namespace fenestra::PhantomCubeTests
+} // namespace fenestra::core::PhantomCubeTests

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-namespace fenestra::PhantomFetusTests {
+namespace fenestra::core::PhantomFetusTests {
 namespace {
 
 const Phantom& smallFetus() {
@@ -100,4 +100,4 @@ TEST(PhantomFetus, RefusesSizesOutOfRange) {
 }
 
 } // namespace
-} // namespace fenestra::PhantomFetusTests
+} // namespace fenestra::core::PhantomFetusTests

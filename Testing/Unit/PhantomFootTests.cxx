@@ -13,7 +13,7 @@
 #include <map>
 #include <queue>
 
-namespace fenestra::PhantomFootTests {
+namespace fenestra::core::PhantomFootTests {
 namespace {
 
 const Phantom& smallFoot() {
@@ -241,4 +241,4 @@ TEST(PhantomFoot, BothLayersRoundTripThroughFile) {
         << id;
 }
 
-} // namespace fenestra::PhantomFootTests
+} // namespace fenestra::core::PhantomFootTests

@@ -10,7 +10,7 @@
 
 #include <map>
 
-namespace fenestra::PhantomKneeTests {
+namespace fenestra::core::PhantomKneeTests {
 namespace {
 
 const Phantom& smallKnee() {
@@ -242,4 +242,4 @@ TEST(PhantomKnee, CartilageIsDenseAndAirTransparent) {
   EXPECT_LT(fat.z(), 0.5 * fat.x()) << "yellow";
 }
 
-} // namespace fenestra::PhantomKneeTests
+} // namespace fenestra::core::PhantomKneeTests

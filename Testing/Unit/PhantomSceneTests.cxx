@@ -14,7 +14,7 @@
 #include <map>
 #include <set>
 
-namespace fenestra::PhantomSceneTests {
+namespace fenestra::core::PhantomSceneTests {
 namespace {
 
 std::vector<double> readNumbers(const pugi::xml_node& node, const char* attribute) {
@@ -384,4 +384,4 @@ TEST(PhantomScene, PropertyOpacitiesArePerMillimeter) {
 }
 
 } // namespace
-} // namespace fenestra::PhantomSceneTests
+} // namespace fenestra::core::PhantomSceneTests

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <thread>
 
-namespace fenestra::PhantomShapesTests {
+namespace fenestra::core::PhantomShapesTests {
 
 TEST(PhantomShapes, BlendsEqualSharpOperationsAwayFromEdge) {
   EXPECT_DOUBLE_EQ(smoothUnion(1.0, 5.0, 2.0), 1.0);
@@ -156,4 +156,4 @@ TEST(PhantomNoise, RicianMomentsMatchPublishedValues) {
   EXPECT_NEAR(std::sqrt(square - muscle * muscle), sigma, 0.1);
 }
 
-} // namespace fenestra::PhantomShapesTests
+} // namespace fenestra::core::PhantomShapesTests

@@ -11,7 +11,7 @@
 
 #include <fstream>
 
-namespace fenestra::PhantomWriterTests {
+namespace fenestra::core::PhantomWriterTests {
 namespace {
 
 struct PhantomFiles : ::testing::Test {
@@ -192,4 +192,4 @@ TEST_F(PhantomFiles, FolderThatCannotBeCreatedIsOutputError) {
 }
 
 } // namespace
-} // namespace fenestra::PhantomWriterTests
+} // namespace fenestra::core::PhantomWriterTests

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::PiecewiseLinearTests {
+namespace fenestra::core::testing::PiecewiseLinearTests {
 namespace {
 
 using Knots = std::vector<ScalarFunction::Knot>;
@@ -88,4 +88,4 @@ TEST(PiecewiseLinear, SortingIsStable) {
 }
 
 } // namespace
-} // namespace fenestra::testing::PiecewiseLinearTests
+} // namespace fenestra::core::testing::PiecewiseLinearTests

@@ -7,7 +7,7 @@
 
 #include "Refusals.h"
 
-namespace fenestra::PresetReaderTests {
+namespace fenestra::core::PresetReaderTests {
 namespace {
 
 using Strings = std::vector<std::string>;
@@ -119,4 +119,4 @@ TEST(PresetReader, ReadsEveryBuiltInPreset) {
 }
 
 } // namespace
-} // namespace fenestra::PresetReaderTests
+} // namespace fenestra::core::PresetReaderTests

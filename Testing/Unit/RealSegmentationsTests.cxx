@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::RealSegmentationsTests {
+namespace fenestra::core::RealSegmentationsTests {
 namespace {
 
 std::filesystem::path findData(const std::string& name) {
@@ -61,4 +61,4 @@ TEST(RealSegmentations, OldFormatMatchesSurfacesOfPatient) {
 }
 
 } // namespace
-} // namespace fenestra::RealSegmentationsTests
+} // namespace fenestra::core::RealSegmentationsTests

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::ReflectanceTests {
+namespace fenestra::core::testing::ReflectanceTests {
 namespace {
 
 /// Reflectance of an isotropically scattering half-space, to 5e-5: 1 - sqrt(1 - a) H(1) with
@@ -62,4 +62,4 @@ TEST(ReflectanceColors, AreLinearBetweenKnots) {
 }
 
 } // namespace
-} // namespace fenestra::testing::ReflectanceTests
+} // namespace fenestra::core::testing::ReflectanceTests

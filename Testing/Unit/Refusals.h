@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Expects an Error (input) whose subject begins with the path; `expected`: as for expectMessage.
 /// Nothing may be printed to standard error.
@@ -21,4 +21,4 @@ void expectRefused(const std::filesystem::path& path, const std::string& expecte
       << readBytes(path).substr(0, 300);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <atomic>
 
-namespace fenestra::testing::ResumeTests {
+namespace fenestra::core::testing::ResumeTests {
 namespace {
 
 RenderSettings makeSettings(std::uint64_t samples, double noise = -1.0) {
@@ -151,4 +151,4 @@ TEST(Tiles, ShardsAreEquallyLargeAndScattered) {
 }
 
 } // namespace
-} // namespace fenestra::testing::ResumeTests
+} // namespace fenestra::core::testing::ResumeTests

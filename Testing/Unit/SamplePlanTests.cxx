@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::SamplePlanTests {
+namespace fenestra::core::testing::SamplePlanTests {
 namespace {
 
 constexpr std::uint64_t pilotSamples = SamplePlan::pilotSamples;
@@ -105,4 +105,4 @@ TEST(SamplePlan, NoiselessAndTinyImagesAreSampledUniformly) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SamplePlanTests
+} // namespace fenestra::core::testing::SamplePlanTests

@@ -14,7 +14,7 @@
 #include <cstring>
 #include <limits>
 
-namespace fenestra::SampleReadingTests {
+namespace fenestra::core::SampleReadingTests {
 namespace {
 
 constexpr std::size_t count = 600'000; // several blocks, of which the last is partial
@@ -205,4 +205,4 @@ TEST(SampleReading, RefusesStreamsOfWrongLength) {
 }
 
 } // namespace
-} // namespace fenestra::SampleReadingTests
+} // namespace fenestra::core::SampleReadingTests

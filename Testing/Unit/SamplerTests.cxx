@@ -9,7 +9,7 @@
 #include <bit>
 #include <set>
 
-namespace fenestra::testing::SamplerTests {
+namespace fenestra::core::testing::SamplerTests {
 namespace {
 
 constexpr std::uint64_t size = Sampler::blockSize;
@@ -201,4 +201,4 @@ TEST(SamplerConversion, EndsOfTheUnitIntervalGiveFiniteValues) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SamplerTests
+} // namespace fenestra::core::testing::SamplerTests

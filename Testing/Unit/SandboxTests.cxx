@@ -21,7 +21,7 @@
 #include <thread>
 #include <unistd.h>
 
-namespace fenestra::SandboxTests {
+namespace fenestra::core::SandboxTests {
 namespace {
 
 constexpr std::uint64_t maxBytes = 1 << 20;
@@ -264,4 +264,4 @@ TEST(ReplyReader, RejectsTruncatedAndOverlongReplies) {
 }
 
 } // namespace
-} // namespace fenestra::SandboxTests
+} // namespace fenestra::core::SandboxTests

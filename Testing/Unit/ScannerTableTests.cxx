@@ -7,7 +7,7 @@
 
 #include <functional>
 
-namespace fenestra::ScannerTableTests {
+namespace fenestra::core::ScannerTableTests {
 namespace {
 
 /// Coordinates, mm: x right-left, y toward the table, whose top is at y = 0 in the middle, z along.
@@ -197,4 +197,4 @@ TEST(ScannerTable, PreservesSegments) {
 }
 
 } // namespace
-} // namespace fenestra::ScannerTableTests
+} // namespace fenestra::core::ScannerTableTests

@@ -3,7 +3,7 @@
 #include "Approx.h"
 #include "Histogram.h"
 
-namespace fenestra::testing::ScatteringTests {
+namespace fenestra::core::testing::ScatteringTests {
 namespace {
 
 const Vec3 incoming = Vec3(0.3, -0.5, 0.81).normalized();
@@ -176,4 +176,4 @@ TEST(SurfaceNormal, FacesTheIncomingPath) {
 }
 
 } // namespace
-} // namespace fenestra::testing::ScatteringTests
+} // namespace fenestra::core::testing::ScatteringTests

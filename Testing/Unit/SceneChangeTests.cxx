@@ -7,7 +7,7 @@
 
 #include <functional>
 
-namespace fenestra::SceneChangeTests {
+namespace fenestra::core::SceneChangeTests {
 namespace {
 
 struct Change {
@@ -325,4 +325,4 @@ TEST_F(SceneChange, InvalidRequestLeavesTheSceneUnchanged) {
 }
 
 } // namespace
-} // namespace fenestra::SceneChangeTests
+} // namespace fenestra::core::SceneChangeTests

@@ -4,7 +4,7 @@
 
 #include <random>
 
-namespace fenestra::SceneFilesTests {
+namespace fenestra::core::SceneFilesTests {
 namespace {
 
 std::string readLocated(SceneFiles& files, const std::string& name) {
@@ -204,4 +204,4 @@ TEST(SceneFiles, RefusesDamagedAndOversizedEntries) {
 }
 
 } // namespace
-} // namespace fenestra::SceneFilesTests
+} // namespace fenestra::core::SceneFilesTests

@@ -4,7 +4,7 @@
 
 #include "Refusals.h"
 
-namespace fenestra::ScenePlanTests {
+namespace fenestra::core::ScenePlanTests {
 namespace {
 
 MrmlDocument parse(const std::string& nodes) {
@@ -179,4 +179,4 @@ TEST(ScenePlan, ListsIgnoredNodes) {
 }
 
 } // namespace
-} // namespace fenestra::ScenePlanTests
+} // namespace fenestra::core::ScenePlanTests

@@ -7,7 +7,7 @@
 
 #include <zip.h>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// A folder for scenes with ct.nrrd (3x4x2 int16, LPS origin 10,20,30 and spacing 1,2,3).
 class SceneFolder : public TemporaryFolder {
@@ -49,4 +49,4 @@ inline void writeArchive(const std::filesystem::path& path,
   ASSERT_EQ(zip_close(archive), 0); // reads the contents, which must still exist
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

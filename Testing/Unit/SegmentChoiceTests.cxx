@@ -4,7 +4,7 @@
 
 #include "MedicalFiles.h"
 
-namespace fenestra::SegmentChoiceTests {
+namespace fenestra::core::SegmentChoiceTests {
 namespace {
 
 TEST(SegmentChoice, IdsPrecedeNamesAndNamesPrecedeValues) {
@@ -64,4 +64,4 @@ TEST(SegmentChoice, ErrorSuggestsSimilarSegments) {
 }
 
 } // namespace
-} // namespace fenestra::SegmentChoiceTests
+} // namespace fenestra::core::SegmentChoiceTests

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::SegmentMaterialsTests {
+namespace fenestra::core::SegmentMaterialsTests {
 namespace {
 
 SegmentInfo makeSegment(const std::string& name) {
@@ -207,4 +207,4 @@ TEST(SegmentMaterials, PriorityDependsOnTheKindOfTissue) {
 }
 
 } // namespace
-} // namespace fenestra::SegmentMaterialsTests
+} // namespace fenestra::core::SegmentMaterialsTests

@@ -4,7 +4,7 @@
 
 #include "MedicalFiles.h"
 
-namespace fenestra::SegmentTagsTests {
+namespace fenestra::core::SegmentTagsTests {
 namespace {
 
 TEST(SegmentTags, TerminologyIsReadWithoutTheLabels) {
@@ -47,4 +47,4 @@ TEST(SegmentTags, TerminologyIsReadWithoutTheLabels) {
 }
 
 } // namespace
-} // namespace fenestra::SegmentTagsTests
+} // namespace fenestra::core::SegmentTagsTests

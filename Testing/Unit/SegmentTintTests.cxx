@@ -6,7 +6,7 @@
 
 #include "Refusals.h"
 
-namespace fenestra::SegmentTintTests {
+namespace fenestra::core::SegmentTintTests {
 namespace {
 
 /// Labelmap of one row with one voxel per segment: value i + 1 at voxel 2 i + 2. The segment
@@ -362,4 +362,4 @@ TEST(SegmentTint, AlbedoIsUsedUnchanged) {
 }
 
 } // namespace
-} // namespace fenestra::SegmentTintTests
+} // namespace fenestra::core::SegmentTintTests

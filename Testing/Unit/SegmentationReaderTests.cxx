@@ -6,7 +6,7 @@
 #include "Approx.h"
 #include "MedicalFiles.h"
 
-namespace fenestra::SegmentationReaderTests {
+namespace fenestra::core::SegmentationReaderTests {
 namespace {
 
 Grid makeGrid(const Size3& size, const Vec3& origin = Vec3::Zero(), double spacing = 1.0) {
@@ -436,4 +436,4 @@ TEST(SegmentationReader, StatisticsHaveVoxelsAndBoundsOfEachSegment) {
 }
 
 } // namespace
-} // namespace fenestra::SegmentationReaderTests
+} // namespace fenestra::core::SegmentationReaderTests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::SilhouetteCellsTests {
+namespace fenestra::core::SilhouetteCellsTests {
 using namespace testing_clipping;
 
 namespace {
@@ -285,4 +285,4 @@ TEST(SilhouetteCells, OffsetShiftsTheDepth) {
 }
 
 } // namespace
-} // namespace fenestra::SilhouetteCellsTests
+} // namespace fenestra::core::SilhouetteCellsTests

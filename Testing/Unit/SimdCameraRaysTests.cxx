@@ -5,7 +5,7 @@
 #include "EachInstructionSet.h"
 #include "Support.h"
 
-namespace fenestra::testing::SimdCameraRaysTests {
+namespace fenestra::core::testing::SimdCameraRaysTests {
 namespace {
 
 class SimdCameraRays : public InstructionSetTest {};
@@ -169,4 +169,4 @@ TEST_P(SimdCameraRays, RaysMatchDoublePrecision) {
 INSTANTIATE_TEST_SUITE_P(InstructionSets, SimdCameraRays, allInstructionSets);
 
 } // namespace
-} // namespace fenestra::testing::SimdCameraRaysTests
+} // namespace fenestra::core::testing::SimdCameraRaysTests

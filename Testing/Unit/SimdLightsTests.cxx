@@ -8,7 +8,7 @@
 
 #include <memory>
 
-namespace fenestra::testing::SimdLightsTests {
+namespace fenestra::core::testing::SimdLightsTests {
 namespace {
 
 EnvironmentMap makeRandomMap(int width, int height, std::uint64_t seed) {
@@ -305,4 +305,4 @@ TEST(AliasTables, SampleBinsWithExactProbabilities) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SimdLightsTests
+} // namespace fenestra::core::testing::SimdLightsTests

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::SimdLinesTests {
+namespace fenestra::core::testing::SimdLinesTests {
 namespace {
 
 ScalarFunction makeFunction(const std::vector<std::array<double, 2>>& points) {
@@ -79,4 +79,4 @@ TEST(SimdLines, DegenerateFunctionsAreSupported) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SimdLinesTests
+} // namespace fenestra::core::testing::SimdLinesTests

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::SimdMajorantsTests {
+namespace fenestra::core::testing::SimdMajorantsTests {
 namespace {
 
 constexpr std::int64_t edge = 96;
@@ -146,4 +146,4 @@ TEST(SimdMajorants, BoundsExtinctionsOfAnyMagnitude) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SimdMajorantsTests
+} // namespace fenestra::core::testing::SimdMajorantsTests

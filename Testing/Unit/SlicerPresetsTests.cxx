@@ -9,7 +9,7 @@
 
 #include <cstdlib>
 
-namespace fenestra::SlicerPresetsTests {
+namespace fenestra::core::SlicerPresetsTests {
 namespace {
 
 constexpr const char* presetsText = R"(<?xml version="1.0" encoding="UTF-8"?>
@@ -94,4 +94,4 @@ TEST(SlicerPresets, EveryPresetOfARealSlicerCanBeRead) {
 }
 
 } // namespace
-} // namespace fenestra::SlicerPresetsTests
+} // namespace fenestra::core::SlicerPresetsTests

@@ -8,7 +8,7 @@
 
 #include <functional>
 
-namespace fenestra::SmoothFillTests {
+namespace fenestra::core::SmoothFillTests {
 using namespace testing_clipping;
 
 namespace {
@@ -151,4 +151,4 @@ TEST(SmoothFill, FillsBuffersOfAnyShape) {
 }
 
 } // namespace
-} // namespace fenestra::SmoothFillTests
+} // namespace fenestra::core::SmoothFillTests

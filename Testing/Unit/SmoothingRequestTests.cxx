@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Kind = SmoothingRequest::Kind;
@@ -24,4 +24,4 @@ TEST(SmoothingRequest, OtherKindsHoldForEveryPurpose) {
 }
 
 } // namespace
-} // namespace fenestra
+} // namespace fenestra::core

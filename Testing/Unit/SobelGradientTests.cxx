@@ -7,7 +7,7 @@
 #include "integrator/simd/PathSteps.h"
 #include "model/medium/Medium.h"
 
-namespace fenestra::testing::SobelGradientTests {
+namespace fenestra::core::testing::SobelGradientTests {
 namespace {
 
 constexpr Vec3 spacing(0.5, 2.0, 1.25);
@@ -232,4 +232,4 @@ TEST(SobelGradient, NormalsOfASphereOfSkinAreWithinTwoDegrees) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SobelGradientTests
+} // namespace fenestra::core::testing::SobelGradientTests

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::SolidFocusTests {
+namespace fenestra::core::testing::SolidFocusTests {
 namespace {
 
 /// A row of slabs of 2 mm voxels: two lungs, a vessel, a second layer with a bronchus in the first
@@ -70,4 +70,4 @@ TEST_F(SolidFocus, SegmentsThatTouchAreSeparated) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SolidFocusTests
+} // namespace fenestra::core::testing::SolidFocusTests

@@ -10,7 +10,7 @@
 #include <future>
 #include <thread>
 
-namespace fenestra::testing::StopTests {
+namespace fenestra::core::testing::StopTests {
 namespace {
 
 /// Scene with voxels of 1e8 mm whose corner cells have majorant 1 / mm, although the extinction is
@@ -114,4 +114,4 @@ TEST(Stop, EndsARenderWithEndlessPaths) {
 }
 
 } // namespace
-} // namespace fenestra::testing::StopTests
+} // namespace fenestra::core::testing::StopTests

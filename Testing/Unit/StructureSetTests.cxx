@@ -8,7 +8,7 @@
 
 #include <random>
 
-namespace fenestra::StructureSetTests {
+namespace fenestra::core::StructureSetTests {
 namespace {
 
 using Path = std::filesystem::path;
@@ -365,4 +365,4 @@ TEST(StructureSet, DamagedFilesAreReadOrRefusedInOneLine) {
 }
 
 } // namespace
-} // namespace fenestra::StructureSetTests
+} // namespace fenestra::core::StructureSetTests

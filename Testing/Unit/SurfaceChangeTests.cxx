@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::SurfaceChangeTests {
+namespace fenestra::core::SurfaceChangeTests {
 using namespace testing_clipping;
 
 namespace {
@@ -138,4 +138,4 @@ TEST_F(RotatedBalls, SmoothedSurfaceChangesMoreSlowly) {
 }
 
 } // namespace
-} // namespace fenestra::SurfaceChangeTests
+} // namespace fenestra::core::SurfaceChangeTests

@@ -12,7 +12,7 @@
 #include <map>
 #include <set>
 
-namespace fenestra::SurfaceMeshTests {
+namespace fenestra::core::SurfaceMeshTests {
 using namespace testing_clipping;
 
 namespace {
@@ -374,4 +374,4 @@ TEST(SurfaceMesh, TriangleCountDoesNotDependOnTheSizeOfTheSubject) {
 }
 
 } // namespace
-} // namespace fenestra::SurfaceMeshTests
+} // namespace fenestra::core::SurfaceMeshTests

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <set>
 
-namespace fenestra::SurfaceWriterTests {
+namespace fenestra::core::SurfaceWriterTests {
 namespace {
 
 void writeSurface(const SurfaceMesh& surface, const std::filesystem::path& path) {
@@ -179,4 +179,4 @@ TEST(SurfaceWriter, RefusesUnknownExtensionsAndMissingFolders) {
 }
 
 } // namespace
-} // namespace fenestra::SurfaceWriterTests
+} // namespace fenestra::core::SurfaceWriterTests

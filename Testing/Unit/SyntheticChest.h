@@ -4,7 +4,7 @@
 
 #include "model/volume/Volume.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct SyntheticChest {
   bool hasLungs = true;
@@ -56,4 +56,4 @@ struct SyntheticChest {
   }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

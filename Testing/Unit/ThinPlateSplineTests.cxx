@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::ThinPlateSplineTests {
+namespace fenestra::core::ThinPlateSplineTests {
 using namespace testing_clipping;
 
 namespace {
@@ -164,7 +164,7 @@ TEST(ThinPlateSpline, TilesAgreeWithPointsWithinTheTolerance) {
             for (const auto& [columns, rows] : {std::pair{64, 64}, {64, 1}, {1, 1}, {5, 13}}) {
               const Vec2 corner = distanceRatio * radius * randomPoint(random, -1, 1).head<2>();
               ++trials; // the offset of every fourth varies the tested tile shape
-              if ((trials + trials / 4) % fenestra::testing::slowdownFactor() != 0)
+              if ((trials + trials / 4) % fenestra::core::testing::slowdownFactor() != 0)
                 continue;
               const double error =
                   findMaxTileError(spline, corner, pitch, static_cast<std::size_t>(columns),
@@ -241,4 +241,4 @@ TEST(ThinPlateSpline, NearlyCoincidentSitesGiveFiniteValues) {
 }
 
 } // namespace
-} // namespace fenestra::ThinPlateSplineTests
+} // namespace fenestra::core::ThinPlateSplineTests

@@ -11,11 +11,11 @@
 
 #include <utility>
 
-namespace fenestra::testing::TintContrastTests {
+namespace fenestra::core::testing::TintContrastTests {
 namespace {
 
 Rgb hexToLinear(std::uint32_t rgb) {
-  return decodeSrgb(fenestra::hexToRgb(rgb));
+  return decodeSrgb(fenestra::core::hexToRgb(rgb));
 }
 
 const Rgb liver = hexToLinear(0x6a3932), muscle = hexToLinear(0x79443d),
@@ -52,7 +52,7 @@ TEST(TintContrast, AdjustmentsChangeColorsAsDocumented) {
   const Lab focus = toLab(adjustFocus(liver, {.focusLightness = -5.0}));
   EXPECT_NEAR(focus.L, before.L - 5.0, 1e-6);
   EXPECT_NEAR(focus.a, before.a, 1e-6);
-  const Lab lesion = toLab(decodeSrgb(fenestra::hexToRgb(accentColors[0].color)));
+  const Lab lesion = toLab(decodeSrgb(fenestra::core::hexToRgb(accentColors[0].color)));
   const Lab half =
       toLab(adjustFocus(liver, {.focusLightness = 2.0, .focusAccent = 0.5, .accent = 0}));
   EXPECT_NEAR(half.L, 0.5 * (before.L + 2.0 + lesion.L), 1e-6);
@@ -369,4 +369,4 @@ TEST_F(InterfaceTests, VolumeColorsAreAdjusted) {
 }
 
 } // namespace
-} // namespace fenestra::testing::TintContrastTests
+} // namespace fenestra::core::testing::TintContrastTests

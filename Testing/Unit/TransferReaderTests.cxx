@@ -7,7 +7,7 @@
 #include "Refusals.h"
 #include "model/medium/Reflectance.h"
 
-namespace fenestra::TransferReaderTests {
+namespace fenestra::core::TransferReaderTests {
 namespace {
 
 TransferFunction parse(const std::string& json) {
@@ -272,4 +272,4 @@ TEST(TransferReader, ReadsTransferFunctionsOfTheReferenceImages) {
 }
 
 } // namespace
-} // namespace fenestra::TransferReaderTests
+} // namespace fenestra::core::TransferReaderTests

@@ -29,7 +29,7 @@
 #include <cstring>
 #include <random>
 
-namespace fenestra::TransformFileTests {
+namespace fenestra::core::TransformFileTests {
 namespace {
 
 using Extensions = std::vector<std::string>;
@@ -243,7 +243,7 @@ const std::string affineText = "#Insight Transform File V1.0\n"
                                "FixedParameters: 0 0 0\n";
 
 void expectRefused(const std::filesystem::path& path, const std::string& expected) {
-  fenestra::expectRefused(path, expected, [&] { readLinearTransform(path).inverse(); });
+  fenestra::core::expectRefused(path, expected, [&] { readLinearTransform(path).inverse(); });
 }
 
 std::string replaceText(std::string text, const std::string& what, const std::string& replacement) {
@@ -403,4 +403,4 @@ TEST(TransformFile, ReadsAFileWrittenBySlicer) {
 }
 
 } // namespace
-} // namespace fenestra::TransformFileTests
+} // namespace fenestra::core::TransformFileTests

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::VolumeChoiceTests {
+namespace fenestra::core::VolumeChoiceTests {
 namespace {
 
 TEST(VolumeChoice, FrameBeyondTheLastIsRefused) {
@@ -157,4 +157,4 @@ TEST(VolumeChoice, SpacingOfAFileThatStatesOneIsRefused) {
 }
 
 } // namespace
-} // namespace fenestra::VolumeChoiceTests
+} // namespace fenestra::core::VolumeChoiceTests

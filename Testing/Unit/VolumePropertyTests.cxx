@@ -7,7 +7,7 @@
 
 #include <random>
 
-namespace fenestra::VolumePropertyTests {
+namespace fenestra::core::VolumePropertyTests {
 namespace {
 
 VolumeProperty makeProperty(std::vector<OpacityNode> opacity) {
@@ -211,4 +211,4 @@ TEST(VolumeProperty, RefusesInvalidValues) {
 }
 
 } // namespace
-} // namespace fenestra::VolumePropertyTests
+} // namespace fenestra::core::VolumePropertyTests

@@ -7,7 +7,7 @@
 
 #include <numeric>
 
-namespace fenestra::VolumeReaderTests {
+namespace fenestra::core::VolumeReaderTests {
 namespace {
 
 template <typename Stored>
@@ -435,4 +435,4 @@ TEST(VolumeReader, ReadsRealScans) {
 }
 
 } // namespace
-} // namespace fenestra::VolumeReaderTests
+} // namespace fenestra::core::VolumeReaderTests

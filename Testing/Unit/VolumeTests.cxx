@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::VolumeTests {
+namespace fenestra::core::testing::VolumeTests {
 namespace {
 
 Grid makeObliqueGrid(const Size3& size) {
@@ -70,4 +70,4 @@ TEST(Frame, IsOrthonormalAndRightHanded) {
 }
 
 } // namespace
-} // namespace fenestra::testing::VolumeTests
+} // namespace fenestra::core::testing::VolumeTests

@@ -12,7 +12,7 @@
 #include <bit>
 #include <cstring>
 
-namespace fenestra::VtkImageTests {
+namespace fenestra::core::VtkImageTests {
 namespace {
 
 const Size3 size(3, 4, 2);
@@ -340,4 +340,4 @@ TEST(VtkImage, BlocksThatLieAreRefused) {
 }
 
 } // namespace
-} // namespace fenestra::VtkImageTests
+} // namespace fenestra::core::VtkImageTests

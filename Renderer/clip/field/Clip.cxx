@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -167,4 +167,4 @@ std::vector<float> makeClipDepth(const Camera& camera, const Clip& clip) {
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

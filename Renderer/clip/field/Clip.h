@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Profile of the clip weight across the surface.
 struct ClipEdge {
@@ -161,4 +161,4 @@ ClipBounds boundClipWeight(const Clip& clip, const Corners& corners);
 /// the ray has no unclipped part.
 std::vector<float> makeClipDepth(const Camera& camera, const Clip& clip);
 
-} // namespace fenestra
+} // namespace fenestra::core

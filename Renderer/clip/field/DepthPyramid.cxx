@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Builds the level above one of columns * rows entries, whose entry i is below(i).
 template <typename Below>
@@ -59,4 +59,4 @@ Interval DepthPyramid::bounds(const DepthBuffer& buffer, const Vec2& a, const Ve
   return {buffer.reference() + extremes.min, buffer.reference() + extremes.max};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

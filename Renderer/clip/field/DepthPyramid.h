@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Level 0 holds the minimum and maximum of 2 x 2 samples, each coarser level those of 2 x 2
 /// entries of the finer level.
@@ -30,4 +30,4 @@ private:
   std::vector<Level> m_levels;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

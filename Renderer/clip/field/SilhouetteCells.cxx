@@ -8,7 +8,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -277,4 +277,4 @@ void SilhouetteCells::evaluate(std::span<Query> queries) const {
     }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -28,7 +28,7 @@
 
 #include "clip/focus/FocusDepth.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct CellRange;
 
@@ -94,4 +94,4 @@ private:
   std::vector<HaloSample> m_halo;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// c0 + c1 s + c2 s^2 + c3 s^3.
 struct Cubic {
@@ -65,4 +65,4 @@ inline double findFirstNonNegative(const Cubic& cubic) {
   return infinity;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -126,4 +126,4 @@ std::vector<ControlPoint> findBoundarySamples(const FocusDepth& focus,
   return collectDistinctSamples(focus.depth, std::move(all));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Point where a contour passes between a focus sample and a neighbor outside the focus.
 struct Crossing {
@@ -49,4 +49,4 @@ std::vector<ControlPoint> placeControlPoints(const FocusDepth& focus,
 std::vector<ControlPoint> findBoundarySamples(const FocusDepth& focus,
                                               const std::vector<Contour>& contours);
 
-} // namespace fenestra
+} // namespace fenestra::core

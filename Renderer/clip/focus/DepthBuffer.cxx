@@ -2,7 +2,7 @@
 
 #include "base/Error.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -94,4 +94,4 @@ void DepthBuffer::move(double offset) {
     depth = static_cast<float>(depth + offset);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

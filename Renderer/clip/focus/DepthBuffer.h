@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Converts a world point to buffer coordinates: (x, y), mm, where its camera ray meets the plane
 /// through the target, and its depth. In perspective, defined for positive depths only.
@@ -187,4 +187,4 @@ private:
   std::vector<float> m_depths; ///< mm, minus m_reference: float suffices for distant cameras, too
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -12,7 +12,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -93,7 +93,7 @@ private:
 };
 
 } // namespace
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::int64_t edge = FocusCells::blockSize;
@@ -217,4 +217,4 @@ std::vector<FocusCells::Block> FocusCells::buildLayer(const Mask& mask, std::int
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

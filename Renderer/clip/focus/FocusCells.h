@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Rays that are traced together, in the cell space of FocusCells, as a structure of arrays.
 struct FocusRays {
@@ -130,4 +130,4 @@ private:
   double m_valueScale;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

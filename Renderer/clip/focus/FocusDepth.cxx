@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Generates camera rays directly in cell space, so that no ray needs a transform.
 class CellRays {
@@ -182,4 +182,4 @@ void FocusTracer::findHitsAndMaxima(std::span<const DepthQuery> queries,
   trace<true>(queries, hits);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// What a camera ray hits: nothing (outside), only the volume's domain (context), or the focus.
 enum class Region : std::uint8_t { outside, context, focus };
@@ -91,4 +91,4 @@ private:
   bool m_isInside; ///< the domain contains the complete grid of the focus
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

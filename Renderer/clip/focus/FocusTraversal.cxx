@@ -14,7 +14,7 @@
 
 #include <bit>
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 namespace {
 
 constexpr std::size_t maxLanes = HWY_MAX_BYTES / sizeof(double);
@@ -363,11 +363,11 @@ void findAllHitsAndMaxima(const FocusCells::Layout& cells, FocusRays& rays) {
 }
 
 } // namespace
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace fenestra {
+namespace fenestra::core {
 
 HWY_EXPORT(findAllHits);
 HWY_EXPORT(findAllHitsAndMaxima);
@@ -400,5 +400,5 @@ void FocusCells::findHitsAndMaxima(FocusRays& rays) const {
   HWY_DYNAMIC_DISPATCH(findAllHitsAndMaxima)(cells, rays);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core
 #endif

@@ -2,7 +2,7 @@
 
 #include "model/camera/BoxProjection.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -155,4 +155,4 @@ std::vector<Interval> computeDepthBounds(const Camera& camera, const DepthBuffer
   return bounds;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Projection of a volume's domain: per row of a depth buffer, the columns whose rays can meet it.
 class DomainFootprint {
@@ -65,4 +65,4 @@ std::vector<Interval> computeDepthBounds(const Camera& camera, const DepthBuffer
                                          const FocusCells& cells, const CellRange& range,
                                          const std::vector<std::uint8_t>& isRequested);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -377,4 +377,4 @@ SurfaceMesh buildSurfaceMesh(const ClipDepth& clip, const Domain& volume, double
   return MeshBuilder(samples, tolerance).build();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

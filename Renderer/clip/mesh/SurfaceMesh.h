@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct SurfaceMesh {
   std::vector<Vec3> points;  ///< world mm
@@ -31,4 +31,4 @@ inline double surfaceTolerance(const Camera& camera) {
 /// sample without a depth gives one triangle. Empty if no three samples span a triangle.
 SurfaceMesh buildSurfaceMesh(const ClipDepth& clip, const Domain& volume, double tolerance);
 
-} // namespace fenestra
+} // namespace fenestra::core

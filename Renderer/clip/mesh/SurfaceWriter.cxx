@@ -7,7 +7,7 @@
 #include <bit>
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -110,4 +110,4 @@ void declareSurface(const std::filesystem::path& path, Outputs& outputs) {
   outputs.add(path);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

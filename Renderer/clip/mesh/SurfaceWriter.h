@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Writes a surface, declared by declareSurface, in the format given by the extension. Coordinates
 /// are RAS mm, stated as in Slicer's files (SPACE=RAS):
@@ -21,4 +21,4 @@ void writeSurface(const SurfaceMesh& surface, const std::filesystem::path& path,
 /// as Outputs does.
 void declareSurface(const std::filesystem::path& path, Outputs& outputs);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -255,4 +255,4 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   return surface;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

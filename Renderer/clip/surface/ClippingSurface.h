@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class SurfaceMode {
   cutaway, ///< removes only what is in front of the focus
@@ -60,4 +60,4 @@ ClipPlane fitFocusPlane(const Camera& camera, const FocusDepth& focus);
 ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,
                                      const SurfaceOptions& options);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Calls function(row) for each row, in parallel, in chunks of several short rows.
@@ -173,4 +173,4 @@ FillLevel::BoundarySample FillLevel::makeBoundarySample(std::size_t at, float st
   return sample;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

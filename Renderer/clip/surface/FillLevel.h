@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct RowStencil;
 struct SampleRun;
@@ -185,4 +185,4 @@ private:
   std::vector<BoundarySample> m_boundary;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 
 #include <memory>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Samples [begin, end) of a row.
 struct SampleRun {
@@ -220,4 +220,4 @@ void FillLevel::solve(double length) {
   forEachFree([&](std::size_t at) { m_depth[at] = static_cast<float>(depths[unknown[at]]); });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -1,6 +1,6 @@
 #include "clip/surface/ClippingSurface.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -40,4 +40,4 @@ ClipPlane fitFocusPlane(const Camera& camera, const FocusDepth& focus) {
   return {camera, world, toward.normalized()};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

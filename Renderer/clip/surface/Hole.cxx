@@ -2,7 +2,7 @@
 
 #include "clip/field/Clip.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -58,4 +58,4 @@ void fillHole(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera
               [&](const Vec2& at) { return isInside(at) ? extent.upper.z() : -infinity; });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

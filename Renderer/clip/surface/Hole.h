@@ -4,7 +4,7 @@
 
 #include "clip/focus/FocusDepth.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class HoleShape {
   box,      ///< axis-aligned in the image; flat bottom at the farthest visible focus point
@@ -24,4 +24,4 @@ struct HoleOptions {
 void fillHole(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera,
               const HoleOptions& options);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -12,7 +12,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -69,11 +69,11 @@ void evaluatePolynomialSimd(std::span<const double> coefficients, double scale,
 }
 
 } // namespace
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace fenestra {
+namespace fenestra::core {
 
 HWY_EXPORT(addKernelsSimd);
 HWY_EXPORT(evaluatePolynomialSimd);
@@ -88,5 +88,5 @@ void evaluatePolynomial(std::span<const double> coefficients, double scale,
   HWY_DYNAMIC_DISPATCH(evaluatePolynomialSimd)(coefficients, scale, x, values);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core
 #endif

@@ -6,7 +6,7 @@
 
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// w phi(|u - site|), phi(r) = r^2 ln r^2.
 struct KernelTerm {
@@ -22,4 +22,4 @@ void addKernels(std::span<const KernelTerm> terms, std::span<const double> u, do
 void evaluatePolynomial(std::span<const double> coefficients, double scale,
                         std::span<const double> x, std::span<double> values);
 
-} // namespace fenestra
+} // namespace fenestra::core

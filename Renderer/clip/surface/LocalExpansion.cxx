@@ -3,7 +3,7 @@
 #include <array>
 #include <complex>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -121,4 +121,4 @@ void LocalExpansion::evaluateRow(std::span<const double> x, double y,
   evaluatePolynomial({row.data(), static_cast<std::size_t>(length)}, invRadius, x, values);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

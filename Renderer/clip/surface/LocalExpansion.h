@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// For u = center + radius * tau, |tau| <= 1, with d = site - center and e = radius / d as complex
 /// numbers, |e| < 1,
@@ -46,4 +46,4 @@ private:
   double m_radius;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -2,7 +2,7 @@
 
 #include "clip/surface/FillLevel.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -43,4 +43,4 @@ void fillSmoothly(DepthBuffer& buffer, const std::vector<Region>& regions, doubl
         buffer.set(sample, buffer.reference() + level.depth(column, row));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

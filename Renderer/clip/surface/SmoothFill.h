@@ -23,7 +23,7 @@
 
 #include "clip/focus/FocusDepth.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Largest slope of u across the boundary: mm of depth per mm on the plane through the target.
 constexpr double maxBoundarySlope = 1.0;
@@ -32,4 +32,4 @@ constexpr double maxBoundarySlope = 1.0;
 /// mm, over which the surface levels off.
 void fillSmoothly(DepthBuffer& buffer, const std::vector<Region>& regions, double length);
 
-} // namespace fenestra
+} // namespace fenestra::core

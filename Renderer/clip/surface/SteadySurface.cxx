@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -79,4 +79,4 @@ ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, c
   return surface;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

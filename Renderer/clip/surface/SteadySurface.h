@@ -11,11 +11,11 @@
 
 #include "clip/surface/ClippingSurface.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Mean surface of five cameras, from `degrees` before to `degrees` after (rotateAroundTarget),
 /// with binomial weights. For 0 degrees, and modes other than `surface`: buildClippingSurface.
 ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, const Mask& focus,
                                    const SurfaceOptions& options, double degrees);
 
-} // namespace fenestra
+} // namespace fenestra::core

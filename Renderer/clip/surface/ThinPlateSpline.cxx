@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -304,4 +304,4 @@ ThinPlateSpline::Points ThinPlateSpline::evaluateFarTerms(const Points& u, doubl
   return sum;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// f(x) = a0 + a1 x + a2 y + sum w_i phi(|x - x_i|), phi(r) = r^2 ln r^2, with
 ///   (K + lambda I) w + P a = z,  P' w = 0,  lambda = (1 - p) / p,
@@ -90,4 +90,4 @@ private:
   std::vector<KernelTerm> m_terms; ///< sites in the unit disk
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

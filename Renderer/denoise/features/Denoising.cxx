@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Pixels that the denoiser changes. It skips deterministic pixels, and those around which no
@@ -125,4 +125,4 @@ FilterInput makeFilterInput(const Film& film, const SceneView& scene,
   return input;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include "denoise/filter/Filter.h"
 #include "image/Film.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Collects the half buffers of the film and the features of the scene: expected albedo, normal,
 /// depth and light, the slope of the depth, and the clip depth. There are no half buffers unless
@@ -20,4 +20,4 @@ inline FilteredImage denoise(const Film& film, const SceneView& scene,
   return filterImage(makeFilterInput(film, scene, features));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

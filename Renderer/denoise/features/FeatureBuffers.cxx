@@ -4,7 +4,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Image of primary hits, row 0 at the top.
@@ -232,4 +232,4 @@ FeatureBuffers computeScalarFeatures(const SceneView& scene) {
   });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include "image/Image.h"
 #include "integrator/render/Render.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Expected values over the camera rays of each pixel: integrals over the first collision, weighted
 /// by its pdf T(t) sigma_t(t) dt. A ray without collision contributes 0.
@@ -30,4 +30,4 @@ FeatureBuffers computeFeatures(const SceneView& scene);
 /// Scalar version of computeFeatures, for scenes that SIMD does not support.
 FeatureBuffers computeScalarFeatures(const SceneView& scene);
 
-} // namespace fenestra
+} // namespace fenestra::core

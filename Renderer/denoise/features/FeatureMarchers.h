@@ -9,7 +9,7 @@
 #include <memory>
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Expected values of one camera ray or pixel (FeatureBuffers).
 struct PrimaryHit {
@@ -116,4 +116,4 @@ private:
   SimdShading m_shading;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

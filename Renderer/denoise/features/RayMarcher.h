@@ -10,7 +10,7 @@
 
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Integrals over the first collision of a ray, weighted by its pdf T(t) sigma_t(t) dt. A ray
 /// without collision contributes 0.
@@ -150,4 +150,4 @@ private:
   const Clip& m_clip;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

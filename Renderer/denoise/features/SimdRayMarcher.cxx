@@ -8,7 +8,7 @@
 // After foreach_target.h:
 #include "integrator/simd/Lookups-inl.h"
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 namespace {
 
 /// One ray per lane. Neighboring rays form a group, since they need a similar number of steps.
@@ -216,11 +216,11 @@ void marchShadowAll(const SimdMedium& medium, RayBatch& rays) {
 }
 
 } // namespace
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace fenestra {
+namespace fenestra::core {
 
 HWY_EXPORT(marchCameraAll);
 HWY_EXPORT(marchShadowAll);
@@ -233,5 +233,5 @@ void marchShadowRays(const SimdMedium& medium, RayBatch& rays) {
   HWY_DYNAMIC_DISPATCH(marchShadowAll)(medium, rays);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core
 #endif

@@ -4,7 +4,7 @@
 #include "integrator/simd/Shading.h"
 #include "integrator/simd/Tracker.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Rays, and the ExpectedHit of each; distances count from the ray's origin in the batch.
 struct MarchBatch {
@@ -19,4 +19,4 @@ void marchCameraRays(const SimdMedium& medium, const SimdShading& shading, March
 /// result: transmittance of each ray, in coarser steps. These rays may start anywhere.
 void marchShadowRays(const SimdMedium& medium, RayBatch& rays);
 
-} // namespace fenestra
+} // namespace fenestra::core

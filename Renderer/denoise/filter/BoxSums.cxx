@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Running sums along a row.
@@ -89,4 +89,4 @@ Plane MaskedMean::sum(const Plane& plane) const {
   return sums;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "denoise/filter/FilterInput.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Sums over windows of 2 radius + 1 pixels around each pixel, clipped at the edges of the image.
 /// Independent of the number of threads.
@@ -25,4 +25,4 @@ private:
   Plane m_count;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

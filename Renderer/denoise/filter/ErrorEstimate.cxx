@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 double sumPlane(const Plane& plane) {
@@ -108,4 +108,4 @@ void estimateErrors(const FitInput& fit, const std::vector<Plane>& filtered, Fil
   image.errorUncertainty = fraction * bias.standardError;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 
 #include "denoise/filter/WindowFit.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Estimated squared error of a pixel and channel, in two parts.
 struct ErrorEstimate {
@@ -36,4 +36,4 @@ inline float relativeWeight(float x) {
 /// filter). It is distributed half by its mean over 21x21 pixels, half by the variance part.
 void estimateErrors(const FitInput& fit, const std::vector<Plane>& filtered, FilteredImage& image);
 
-} // namespace fenestra
+} // namespace fenestra::core

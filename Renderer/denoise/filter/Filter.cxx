@@ -10,7 +10,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr int levels = 4;      ///< half-widths 2, 4, 8, 16
@@ -259,4 +259,4 @@ FilteredImage filterImage(FilterInput input) {
   return image;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 
 #include "denoise/filter/WindowFit.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline constexpr int filterVersion = 1; ///< changes whenever filtered images do
 
@@ -21,4 +21,4 @@ FilteredImage filterImage(FilterInput input);
 /// the mean of both half buffers.
 std::vector<Plane> filterAdaptively(const FitInput& fit, const std::array<Plane, 3>& variance);
 
-} // namespace fenestra
+} // namespace fenestra::core

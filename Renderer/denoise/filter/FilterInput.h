@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Red, green and blue, premultiplied, and alpha.
 using FourPlanes = std::array<Plane, 4>;
@@ -35,4 +35,4 @@ struct FilteredImage {
   double estimatedError = 0.0, errorUncertainty = 0.0;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

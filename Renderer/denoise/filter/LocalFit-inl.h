@@ -14,7 +14,7 @@
 #include <array>
 
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 namespace {
 
 constexpr std::size_t lanes = 16;
@@ -112,6 +112,6 @@ private:
 };
 
 } // namespace
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

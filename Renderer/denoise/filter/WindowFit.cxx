@@ -14,7 +14,7 @@
 // After foreach_target.h:
 #include "denoise/filter/LocalFit-inl.h"
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 namespace {
 
 /// Ring buffer of the last rows of several planes.
@@ -276,11 +276,11 @@ void fitTile(const FitInput& input, int level, std::int64_t column, std::int64_t
 }
 
 } // namespace
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace fenestra {
+namespace fenestra::core {
 
 HWY_EXPORT(fitTile);
 
@@ -297,5 +297,5 @@ std::vector<Plane> fitWindows(const FitInput& input, int level) {
   return out;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core
 #endif

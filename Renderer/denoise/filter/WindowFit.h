@@ -7,7 +7,7 @@
 #include "denoise/filter/FilterInput.h"
 #include "denoise/filter/WindowSums.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Planes for the fit; 0 at inactive pixels.
 struct FitInput {
@@ -25,4 +25,4 @@ constexpr int tileColumns = 58, tileRows = 116;
 /// the number of threads.
 std::vector<Plane> fitWindows(const FitInput& input, int level);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct SumLayout {
   static constexpr std::size_t maxFeatures = 12;
@@ -32,4 +32,4 @@ struct SumLayout {
   std::size_t slope(std::size_t c, std::size_t i) const { return intercept(c) + 1 + i; }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

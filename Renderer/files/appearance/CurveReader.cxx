@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 
 double readFinite(const JsonNode& node) {
   return node.number(-maxMagnitude, maxMagnitude);
@@ -66,4 +66,4 @@ double readMeanCosine(const JsonNode& object, double fallback, ColorKind kind) {
   return g;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

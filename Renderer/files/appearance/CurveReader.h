@@ -5,7 +5,7 @@
 #include "io/JsonNode.h"
 #include "model/medium/PiecewiseLinear.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline constexpr double maxMagnitude = 1e30; ///< largest scalar and extinction
 
@@ -30,4 +30,4 @@ ColorKind findColorKind(const JsonNode& object);
 /// maxReflectanceG.
 double readMeanCosine(const JsonNode& object, double fallback, ColorKind kind);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 Rgb readHexColor(const JsonNode& node) {
   const std::string text = node.value().is_string() ? node.text() : "";
@@ -20,4 +20,4 @@ Rgb readHexColor(const JsonNode& node) {
   return decodeSrgb(encoded);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

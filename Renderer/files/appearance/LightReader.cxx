@@ -7,7 +7,7 @@
 #include "io/JsonNode.h"
 #include "io/MessageText.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double maxNumber = 1e30; ///< limit of radiance and length; a product of two stays finite
@@ -194,4 +194,4 @@ EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
   return map;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Reads a lights `.json`. Throws Error (input). The `file` of an environment is relative to the
 /// folder of the JSON file; its `radiance`, if present, scales the map.
@@ -26,4 +26,4 @@ bool hasFileReference(std::string_view json, const std::string& source);
 /// [0, 1e12].
 EnvironmentMap readEnvironmentMap(const std::filesystem::path& path);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double maxPriority = 1000.0, maxInterfaceWeight = 10.0;
@@ -234,4 +234,4 @@ SegmentMedium applyChange(const SegmentMedium& medium, const MaterialChange& cha
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Assigns a material to the segments that match by label value, code, category or name.
 struct MaterialRule {
@@ -65,4 +65,4 @@ MaterialChange parseMaterialChange(const std::string& text, const MaterialTable&
 SegmentMedium applyChange(const SegmentMedium& medium, const MaterialChange& change,
                           const MaterialTable& table);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr Modality modalities[] = {Modality::ct, Modality::mr, Modality::us};
@@ -50,4 +50,4 @@ OrganPreset parsePreset(std::string_view json, const std::string& source) {
   return preset;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

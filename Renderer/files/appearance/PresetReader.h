@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct OrganPreset {
   std::string name; ///< file name without extension
@@ -26,4 +26,4 @@ struct OrganPreset {
 /// the preset's name. Throws Error (input) that states source and field.
 OrganPreset parsePreset(std::string_view json, const std::string& source);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 
 #include <limits>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -96,4 +96,4 @@ std::string encodePropertyVp(const VolumeProperty& property) {
                 strings.gradientOpacity, '\n', strings.color, '\n');
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

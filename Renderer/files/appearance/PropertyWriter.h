@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Content of a .vp.json (Slicer 5.10 and later). `minimum`, `maximum`: range of the volume's
 /// scalars.
@@ -25,4 +25,4 @@ std::string encodePropertyVp(const VolumeProperty& property);
 
 inline constexpr double ambientLight = 0.1; ///< Slicer's ambient term; Fenestra has none
 
-} // namespace fenestra
+} // namespace fenestra::core

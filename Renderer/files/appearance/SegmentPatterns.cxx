@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <regex>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Reads a pattern or a code as text.
@@ -87,4 +87,4 @@ const NamePattern* findPattern(const std::vector<NamePattern>& patterns,
   return found == patterns.end() ? nullptr : &*found;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

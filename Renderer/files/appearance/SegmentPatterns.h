@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Pattern for names. A name matches if the pattern's words match consecutive words of the name,
 /// case-insensitively. `*` stands for any text within a word, `?` for any character. Other
@@ -42,4 +42,4 @@ std::string readCode(const JsonNode& node);
 const NamePattern* findPattern(const std::vector<NamePattern>& patterns,
                                const std::vector<std::string>& name);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include "model/medium/Reflectance.h"
 #include "model/medium/VolumeProperty.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double maxAnisotropy = 0.999; ///< maximum |g|; at 1, directions would never change
@@ -253,4 +253,4 @@ TransferFunction readTransferFunction(const std::filesystem::path& path) {
   return std::move(file.function);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

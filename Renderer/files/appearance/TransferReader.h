@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Content of a transfer function file.
 struct TransferFile {
@@ -40,4 +40,4 @@ TransferFile parseTransferJson(std::string_view json, const std::string& source)
 TransferFunction parseTransferFunction(const std::map<std::string, std::string>& attributes,
                                        const std::string& source);
 
-} // namespace fenestra
+} // namespace fenestra::core

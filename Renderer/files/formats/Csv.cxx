@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t maxFields = 1'000'000;
@@ -105,4 +105,4 @@ std::string formatCsvLine(const std::vector<std::string>& fields) {
   return join(fields, ",", format) + "\r\n";
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

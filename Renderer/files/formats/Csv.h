@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Record (row) of a table.
 struct CsvRecord {
@@ -25,4 +25,4 @@ std::vector<CsvRecord> parseCsv(std::string_view text, const std::string& source
 /// leading apostrophe.
 std::string formatCsvLine(const std::vector<std::string>& fields);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 
 using namespace header;
 
@@ -258,4 +258,4 @@ NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
   return header;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct NrrdHeaderText {
   /// Values by key; keys in lower case without blanks (teem accepts "axis mins" and "axismins").
@@ -40,4 +40,4 @@ void checkNrrdPath(const std::filesystem::path& path);
 void checkNrrdNumbers(const std::filesystem::path& file, std::uint64_t offset,
                       const std::filesystem::path& header);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <bit>
 #include <limits>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -79,4 +79,4 @@ std::string encodeNrrd(const NrrdHeader& header, std::string_view samples) {
   return file;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

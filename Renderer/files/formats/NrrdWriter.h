@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Additional header lines, "key:=value".
 using NrrdFields = std::vector<std::pair<std::string, std::string>>;
@@ -32,4 +32,4 @@ std::string formatNrrdHeader(const NrrdHeader& header);
 /// Content of the complete file. `samples`: bytes in memory order, little endian.
 std::string encodeNrrd(const NrrdHeader& header, std::string_view samples);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace fenestra::header {
+namespace fenestra::core::header {
 
 inline constexpr std::size_t maxHeaderBytes = 16 << 20;
 
@@ -86,4 +86,4 @@ private:
   std::size_t m_position = 0;
 };
 
-} // namespace fenestra::header
+} // namespace fenestra::core::header

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 
 std::optional<VtkEncoding> findVtkEncoding(const pugi::xml_node& file) {
   const std::string_view order = file.attribute("byte_order").value(),
@@ -137,4 +137,4 @@ void VtkArrayReader::inflateBlock() {
     throw VtkArrayError();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

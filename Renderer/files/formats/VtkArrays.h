@@ -14,7 +14,7 @@ namespace pugi {
 class xml_node;
 }
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// The array is truncated or contradicts itself.
 struct VtkArrayError : std::runtime_error {
@@ -72,4 +72,4 @@ private:
   std::size_t m_position = 0;    ///< in m_block
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -66,4 +66,4 @@ std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& c
   return readContent(source.get(), path);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct ZipEntry {
   std::string name;         ///< path in the archive, with slashes
@@ -22,4 +22,4 @@ struct ZipEntry {
 std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& comment,
                       const std::filesystem::path& path);
 
-} // namespace fenestra
+} // namespace fenestra::core

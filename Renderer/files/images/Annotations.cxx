@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Rectangle, pixels from the image's top left corner.
@@ -165,4 +165,4 @@ void drawAnnotations(const Annotations& annotations, const ImagePlane& plane, in
   painter.draw();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Marks to draw.
 struct Annotations {
@@ -29,4 +29,4 @@ double chooseScaleLength(double imageWidth);
 void drawAnnotations(const Annotations& annotations, const ImagePlane& plane, int width, int height,
                      std::vector<float>& rgba);
 
-} // namespace fenestra
+} // namespace fenestra::core

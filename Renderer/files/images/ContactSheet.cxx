@@ -10,7 +10,7 @@
 #include <array>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr int boxWidth = 336, maxBoxHeight = 504, minBoxHeight = 168; ///< pixels
@@ -211,4 +211,4 @@ Image makeContactSheet(const std::string& title, const std::string& subtitle,
   return std::move(sheet).takeImage();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

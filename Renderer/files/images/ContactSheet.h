@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct SheetEntry {
   std::string name;
@@ -26,4 +26,4 @@ inline constexpr std::size_t maxSheetEntries = 36;
 Image makeContactSheet(const std::string& title, const std::string& subtitle,
                        std::span<const SheetEntry> entries, int maxColumns = 6);
 
-} // namespace fenestra
+} // namespace fenestra::core

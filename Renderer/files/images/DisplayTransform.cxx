@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace ocio = OCIO_NAMESPACE;
 
@@ -85,4 +85,4 @@ std::vector<float> toDisplay(std::vector<float> rgba, const Display& display) {
   return rgba;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Views of the configuration. `film`: for presentation; more mid-tone contrast, hues preserved.
 /// `photographic`: for measurement; dark and middle values unchanged, applied per channel. Both
@@ -31,4 +31,4 @@ struct Display {
 /// have no effect.
 std::vector<float> toDisplay(std::vector<float> rgba, const Display& display);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class ImageFormat { exr, nrrd, png, tiff };
 
@@ -28,4 +28,4 @@ inline bool isDisplayFile(const std::filesystem::path& path) {
   return format == ImageFormat::png || format == ImageFormat::tiff;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -21,7 +21,7 @@
 #include <limits>
 #include <memory>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::int64_t maxSide = 32768;
@@ -350,4 +350,4 @@ Image readImage(const std::filesystem::path& path) {
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Reads an image in the format that its extension names; row 0 is at the top.
 /// - `.exr`: all channels of the first part's data window, as float, and the header attributes
@@ -18,4 +18,4 @@ namespace fenestra {
 /// more pixels than the file can hold, or more than 2^28 samples over all channels.
 Image readImage(const std::filesystem::path& path);
 
-} // namespace fenestra
+} // namespace fenestra::core

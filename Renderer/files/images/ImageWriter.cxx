@@ -24,7 +24,7 @@
 #include <memory>
 #include <new>
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -306,4 +306,4 @@ void declareImage(const std::filesystem::path& path, Outputs& outputs, NameOrigi
     outputs.add(makeSiblingPath(path, "denoised"), hasProvenanceTag);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Writes an image in the format that its extension names, to the outputs that declareImage
 /// declared:
@@ -39,4 +39,4 @@ enum class HasDenoised { no, yes };
 void declareImage(const std::filesystem::path& path, Outputs& outputs,
                   NameOrigin origin = NameOrigin::user, HasDenoised hasDenoised = HasDenoised::no);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include FT_GLYPH_H
 #include FT_STROKER_H
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double fixed6 = 64.0, fixed16 = 65536.0; ///< units of FreeType's fixed-point numbers
@@ -189,4 +189,4 @@ TextBitmap rasterizeText(std::string_view text, const TextStyle& style) {
   return line;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Height of capital letters, height above the baseline, and distance of lines, in em.
 inline constexpr double fontCapHeight = 0.73, fontAscent = 0.93, fontLineHeight = 1.18;
@@ -30,4 +30,4 @@ struct TextBitmap {
 /// Throws std::bad_alloc.
 TextBitmap rasterizeText(std::string_view text, const TextStyle& style);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 
 #include <cstring>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using gdcm::DataSet;
@@ -82,4 +82,4 @@ void limitMemoryByFile(const std::filesystem::path& path) {
   limitMemory(missing ? least : least + bytes * ratio);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

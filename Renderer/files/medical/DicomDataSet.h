@@ -13,7 +13,7 @@ class File;
 class Tag;
 } // namespace gdcm
 
-namespace fenestra {
+namespace fenestra::core {
 
 extern const gdcm::Tag pixelData;
 
@@ -49,4 +49,4 @@ bool isDeflated(const gdcm::File& file);
 /// an element declares.
 void limitMemoryByFile(const std::filesystem::path& path);
 
-} // namespace fenestra
+} // namespace fenestra::core

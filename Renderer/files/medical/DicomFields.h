@@ -8,7 +8,7 @@
 #include <array>
 #include <variant>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Encoding of a value: text, or numbers of these DICOM types.
 enum class DicomValue { text, us, ul, fl, fd };
@@ -99,4 +99,4 @@ inline constexpr char dicomHeaderRequest = 'h', dicomVoxelsRequest = 'v';
 
 extern const SandboxJob dicomJob, dicomFramesJob;
 
-} // namespace fenestra
+} // namespace fenestra::core

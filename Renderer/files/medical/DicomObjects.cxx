@@ -12,7 +12,7 @@
 #include <cstring>
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -348,4 +348,4 @@ std::string DicomObjectReader::readFrames(const Path& path, const DicomSegmentat
   return std::move(*reply);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

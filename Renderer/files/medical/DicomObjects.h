@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct DicomSegment {
   std::int32_t number = 0; ///< SegmentNumber
@@ -84,4 +84,4 @@ private:
 /// messages.
 DicomObject parseDicomObject(std::string_view reply, const std::string& source);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Positions along the normal of the first slice, sorted.
@@ -104,4 +104,4 @@ bool canBeOneVolume(const std::vector<DicomSlices>& phases) {
   });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "files/medical/DicomSeries.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Joins groups of slices, in the order of a key, to phases: a group that continues the phase
 /// before it, with an overlap of less than one slice distance, is part of it.
@@ -14,4 +14,4 @@ std::vector<DicomSlices> joinPhases(const std::vector<DicomSlices>& groups);
 /// are sparser than that.
 bool canBeOneVolume(const std::vector<DicomSlices>& phases);
 
-} // namespace fenestra
+} // namespace fenestra::core

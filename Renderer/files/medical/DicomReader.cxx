@@ -14,7 +14,7 @@
 #include <fstream>
 #include <limits>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -334,4 +334,4 @@ RescaledVoxels rescaleVoxels(const DicomHeader& h, const std::string& voxels) {
                     : rescaleStored<std::uint32_t, std::uint32_t>(h, voxels);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Header of one frame: a file of a single image, or a frame of a multi-frame file with the values
 /// of its functional groups. Texts are empty, and lists empty, if the value is missing.
@@ -119,4 +119,4 @@ using RescaledVoxels =
 /// Applies slope and intercept to the result of readVoxels. Requires checkDicomPixels(header).
 RescaledVoxels rescaleVoxels(const DicomHeader& header, const std::string& voxels);
 
-} // namespace fenestra
+} // namespace fenestra::core

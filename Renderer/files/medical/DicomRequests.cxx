@@ -13,7 +13,7 @@
 #include <fstream>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using gdcm::DataSet;
@@ -227,4 +227,4 @@ const SandboxJob dicomJob("dicom", handleDicomRequest);
 const SandboxJob dicomFramesJob("dicom-frames", handleDicomRequest,
                                 {.seconds = 60, .bytes = std::uint64_t{8} << 30});
 
-} // namespace fenestra
+} // namespace fenestra::core

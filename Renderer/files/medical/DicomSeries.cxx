@@ -10,7 +10,7 @@
 #include <set>
 #include <tuple>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -283,4 +283,4 @@ DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
                    "\" matches no DICOM series; it has ", formatSeries(series));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

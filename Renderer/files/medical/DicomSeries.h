@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct DicomSlice {
   std::filesystem::path path;
@@ -93,4 +93,4 @@ Volume readDicomVolume(const DicomSeries& series, const VolumeChoice& choice = {
 Volume readDicomVolume(const std::vector<std::filesystem::path>& files, const std::string& name,
                        const VolumeChoice& choice = {});
 
-} // namespace fenestra
+} // namespace fenestra::core

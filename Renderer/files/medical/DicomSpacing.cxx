@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double copyTolerance = 0.02; ///< fraction of a step
@@ -146,4 +146,4 @@ SliceSpacing computeSpacing(const std::vector<PlacedSlice>& slices, const Vec3& 
   return spacing;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

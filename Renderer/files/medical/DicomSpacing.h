@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Slice of the volume, between two slices of the series: (1 - fraction) * lower + fraction *
 /// upper.
@@ -39,4 +39,4 @@ SliceSpacing computeSpacing(const std::vector<PlacedSlice>& slices, const Vec3& 
                             const std::array<Vec3, 2>& sides, const std::array<double, 2>& pixel,
                             const std::string& name, std::vector<Message>& warnings);
 
-} // namespace fenestra
+} // namespace fenestra::core

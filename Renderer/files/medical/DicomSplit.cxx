@@ -21,7 +21,7 @@
 #include <tuple>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Groups = std::vector<DicomSlices>;
@@ -385,4 +385,4 @@ std::vector<DicomSeries> splitSeries(DicomSlices slices, const std::string& name
   return volumes;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Names that iconv knows, by what a defined term ends with. With code extensions, Japanese text
@@ -63,4 +63,4 @@ std::string toUtf8(const std::string& text, const std::string& characterSet) {
   return toOneLine(isConverted ? output : text);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

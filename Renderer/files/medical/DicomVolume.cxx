@@ -11,7 +11,7 @@
 #include <array>
 #include <memory>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -243,4 +243,4 @@ Volume readDicomVolume(const DicomSeries& series, const VolumeChoice& choice) {
   return readVolumeOf(series, (files.size() == 1 ? first : first.parent_path()).string(), choice);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

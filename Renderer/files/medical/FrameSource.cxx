@@ -2,7 +2,7 @@
 
 #include <memory>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t blockBytes = 1 << 20;
@@ -82,4 +82,4 @@ SampleSource pickFrame(SampleSource all, const FrameChoice& choice) {
   return one;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "files/medical/SampleSource.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// A frame of a file. Frames are stored one after the other, or interleaved: voxel by voxel.
 struct FrameChoice {
@@ -16,4 +16,4 @@ struct FrameChoice {
 /// the others; the end of a stream is checked only if the frame is at the end.
 SampleSource pickFrame(SampleSource all, const FrameChoice& choice);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr int hounsfieldOffset = 1024; ///< the stored value of 0 HU
@@ -86,4 +86,4 @@ void correctHounsfieldOffset(Volume& volume) {
   volume.maximum -= hounsfieldOffset;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

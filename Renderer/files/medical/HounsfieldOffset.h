@@ -3,7 +3,7 @@
 
 #include "model/volume/Volume.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Subtracts 1024 from a CT without rescaling under three conditions: the minimum is at least -200;
 /// the mode of the voxels on the volume's sides is within 50 of 0 (air); the median of the voxels
@@ -11,4 +11,4 @@ namespace fenestra {
 /// the tissue does not match.
 void correctHounsfieldOffset(Volume& volume);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -265,4 +265,4 @@ Volume readImageStack(const ImageStack& stack, const VolumeChoice& choice) {
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct ImageStack {
   struct Slice {
@@ -46,4 +46,4 @@ ImageStack openImageStack(const std::filesystem::path& path);
 /// allocated for more samples than the files or the machine's memory can hold.
 Volume readImageStack(const ImageStack& stack, const VolumeChoice& choice);
 
-} // namespace fenestra
+} // namespace fenestra::core

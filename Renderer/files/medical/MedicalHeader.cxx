@@ -13,7 +13,7 @@
 #include <map>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 using namespace header;
 
@@ -285,4 +285,4 @@ std::uint64_t checkDeclaredBytes(const std::filesystem::path& path, const Stored
   return declared;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class MedicalFormat { nrrd, nifti, mgh, metaImage, vtk };
 
@@ -54,4 +54,4 @@ std::uint64_t checkDeclaredBytes(const std::filesystem::path& path, const Stored
                                  std::uint64_t count, std::uint64_t sampleBytes,
                                  std::uint64_t skipped = 0);
 
-} // namespace fenestra
+} // namespace fenestra::core

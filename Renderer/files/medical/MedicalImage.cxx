@@ -21,7 +21,7 @@
 #include <memory>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 itk::ImageIOBase::Pointer makeImageIo(MedicalFormat format) {
@@ -351,4 +351,4 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <map>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct MedicalImage {
   Grid grid = {}; ///< index to RAS mm, whatever the space of the file
@@ -40,4 +40,4 @@ using SampleConsumer = std::function<void(const MedicalImage&, const SampleSourc
 void readMedicalImage(const std::filesystem::path& path, Components allowed,
                       const SampleConsumer& consume, const VolumeChoice& choice = {});
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Big-endian number at a byte offset.
@@ -85,4 +85,4 @@ NiftiHeader parseMghHeader(std::string_view bytes, const std::filesystem::path& 
   return header;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "files/medical/NiftiHeader.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline constexpr std::size_t mghHeaderBytes = 284;
 
@@ -12,4 +12,4 @@ inline constexpr std::size_t mghHeaderBytes = 284;
 /// naming `path`, for other headers and sample types.
 NiftiHeader parseMghHeader(std::string_view bytes, const std::filesystem::path& path);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Grid of the sform, then that of the qform; empty: they agree, or the image is not a volume.
@@ -76,4 +76,4 @@ VolumeChoice chooseFormByVolume(const std::filesystem::path& path, const Grid* v
   return choice;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

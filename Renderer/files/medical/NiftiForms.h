@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Grids that an image file may have, by its header: one, or two if its qform and sform disagree.
 /// Empty: not a format of MedicalHeader.h. Throws Error (input) as readMedicalImage does.
@@ -26,4 +26,4 @@ void chooseNiftiForm(const std::filesystem::path& path,
 /// As above, by the grid of the volume for a segmentation; null: none.
 VolumeChoice chooseFormByVolume(const std::filesystem::path& path, const Grid* volume);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <map>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Byte offsets of fields.
@@ -354,4 +354,4 @@ NiftiHeader parseNiftiHeader(std::string_view bytes, const std::filesystem::path
   return header;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline constexpr std::size_t nifti1Bytes = 348, nifti2Bytes = 540; ///< of the headers
 
@@ -47,4 +47,4 @@ std::size_t countNiftiHeaderBytes(std::string_view start);
 NiftiHeader parseNiftiHeader(std::string_view bytes, const std::filesystem::path& path,
                              const VolumeChoice& choice = {});
 
-} // namespace fenestra
+} // namespace fenestra::core

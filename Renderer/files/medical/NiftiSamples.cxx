@@ -9,7 +9,7 @@
 #include <array>
 #include <memory>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 Error makeDamagedError(const std::filesystem::path& path) {
@@ -110,4 +110,4 @@ SampleSource openNiftiSamples(const std::filesystem::path& path, const StoredSam
   };
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Throws Error (input) as parseNiftiHeader does, and if the file is too short.
 NiftiHeader readNiftiHeader(const std::filesystem::path& path, const VolumeChoice& choice = {});
@@ -27,4 +27,4 @@ std::string readNiftiExtensions(const std::filesystem::path& path, const NiftiHe
 SampleSource openNiftiSamples(const std::filesystem::path& path, const StoredSamples& stored,
                               const NiftiHeader& header, std::size_t count);
 
-} // namespace fenestra
+} // namespace fenestra::core

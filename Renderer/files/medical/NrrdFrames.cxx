@@ -10,7 +10,7 @@
 #include <map>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 using namespace header;
 
@@ -147,4 +147,4 @@ SampleSource openNrrdFrames(const Path& path, const StoredSamples& stored,
   return source;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct NrrdFrames {
   Size3 size;
@@ -33,4 +33,4 @@ std::optional<NrrdFrames> findNrrdFrames(const std::filesystem::path& path,
 SampleSource openNrrdFrames(const std::filesystem::path& path, const StoredSamples& stored,
                             const NrrdFrames& frames);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 using namespace header;
 
@@ -110,4 +110,4 @@ std::vector<fs::path> findReferencedFiles(const fs::path& path) {
   return {};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

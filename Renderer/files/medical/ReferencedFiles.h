@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Paths of the sample files of a .nrrd, .nhdr, .mha or .mhd, the surfaces of a .vtm, and the other
 /// file of an Analyze pair, whether they exist or not; for numbered series, the existing files.
 /// Empty for damaged and other files; their readers report what is wrong.
 std::vector<std::filesystem::path> findReferencedFiles(const std::filesystem::path& path);
 
-} // namespace fenestra
+} // namespace fenestra::core

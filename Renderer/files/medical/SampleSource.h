@@ -14,7 +14,7 @@
 #include <variant>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Type of a sample: which alternative is active; its value is unused.
 using SampleType =
@@ -128,4 +128,4 @@ void readSamples(const SampleSource& source, Store& store) {
     source.finish();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Range and kind of samples. Doubles hold every 32-bit integer exactly.
 struct SampleStats {
@@ -178,4 +178,4 @@ private:
   SampleStats m_stats;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

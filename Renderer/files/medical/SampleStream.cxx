@@ -7,7 +7,7 @@
 #include <fstream>
 #include <memory>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// One zlib or gzip stream that starts at the file's current position.
@@ -87,4 +87,4 @@ void openStream(const std::filesystem::path& path, const StoredSamples& stored,
   };
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

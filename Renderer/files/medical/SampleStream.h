@@ -4,7 +4,7 @@
 #include "files/medical/MedicalHeader.h"
 #include "files/medical/SampleSource.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Sets up `source` to read samples for which locateSamples set `isRaw` or `isStream`. `path` is
 /// used in messages; `declared` is the result of checkDeclaredBytes. Reading throws Error (input)
@@ -13,4 +13,4 @@ namespace fenestra {
 void openStream(const std::filesystem::path& path, const StoredSamples& stored,
                 std::uint64_t declared, SampleSource& source);
 
-} // namespace fenestra
+} // namespace fenestra::core

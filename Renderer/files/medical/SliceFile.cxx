@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -106,4 +106,4 @@ std::string SliceReader::readSamples(const Path& path, std::uint32_t page,
   return *std::move(reply);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Types of samples that a reply can name, by index.
 inline const std::array<SampleType, 5> sliceTypes = {std::uint8_t(), std::int8_t(), std::uint16_t(),
@@ -67,4 +67,4 @@ private:
 inline constexpr char sliceHeaderRequest = 'h', sliceSamplesRequest = 's';
 extern const SandboxJob sliceJob;
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// A page as its file describes it.
@@ -228,4 +228,4 @@ std::string handleSliceRequest(const std::string& request) {
 
 const SandboxJob sliceJob("slices", handleSliceRequest, {.seconds = 30});
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double secondsPerDay = 86400.0;
@@ -132,4 +132,4 @@ void convertToSuv(DicomSlices& slices, const DicomSeries& series, const std::str
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

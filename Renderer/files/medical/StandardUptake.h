@@ -3,7 +3,7 @@
 
 #include "files/medical/DicomSeries.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// SUV by body weight, g/ml, per Bq/ml: weight over the injected dose, decayed to the time to which
 /// the scan's values are corrected (DecayCorrection ADMIN: the injection; START: the series, or the
@@ -18,4 +18,4 @@ std::optional<double> computeSuvFactor(const DicomHeader& header, std::string& f
 void convertToSuv(DicomSlices& slices, const DicomSeries& series, const std::string& name,
                   std::vector<Message>& warnings);
 
-} // namespace fenestra
+} // namespace fenestra::core

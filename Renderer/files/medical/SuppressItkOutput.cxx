@@ -4,7 +4,7 @@
 
 #include <iostream>
 
-namespace fenestra {
+namespace fenestra::core {
 
 SuppressItkOutput::SuppressItkOutput() : m_previous(std::cerr.rdbuf(nullptr)) {
   itk::Object::SetGlobalWarningDisplay(false);
@@ -15,4 +15,4 @@ SuppressItkOutput::~SuppressItkOutput() {
   std::cerr.clear();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include <streambuf>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Discards std::cerr during its lifetime and disables ITK's warnings for the rest of the process.
 class SuppressItkOutput {
@@ -17,4 +17,4 @@ private:
   std::streambuf* m_previous;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -1,6 +1,6 @@
 #include "files/medical/VolumeChoice.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 std::size_t chooseFrame(const std::string& subject, std::optional<std::size_t> frame,
                         std::size_t count, std::vector<Message>& warnings) {
@@ -25,4 +25,4 @@ void refuseSpacing(const std::string& subject, const VolumeChoice& choice) {
                      "states its own voxel spacing, so none may be given");
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// The two index-to-world transforms of a NIfTI header.
 enum class NiftiForm { qform, sform };
@@ -35,4 +35,4 @@ void refuseForm(const std::string& subject, const VolumeChoice& choice);
 /// Throws Error (input) if the choice has a spacing: the input states its own.
 void refuseSpacing(const std::string& subject, const VolumeChoice& choice);
 
-} // namespace fenestra
+} // namespace fenestra::core

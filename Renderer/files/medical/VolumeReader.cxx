@@ -3,7 +3,7 @@
 #include "base/Error.h"
 #include "files/medical/MedicalImage.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 Volume makeVolume(const std::string& name, const Grid& grid, VoxelStore&& samples) {
   const SampleStats& s = samples.stats();
@@ -38,4 +38,4 @@ Volume readVolume(const std::filesystem::path& path, const VolumeChoice& choice)
   return volume;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Reads NRRD (.nrrd .nhdr), NIfTI or Analyze (.nii .nii.gz, .hdr with .img), FreeSurfer (.mgz
 /// .mgh), MetaImage (.mha .mhd) or VTK XML images (.vti) with any scalar type and geometry. Of
@@ -23,4 +23,4 @@ using VoxelStore = SampleStore<std::uint8_t, std::int16_t, std::uint16_t, float>
 /// is used in messages. Throws Error (input) if no sample is finite.
 Volume makeVolume(const std::string& name, const Grid& grid, VoxelStore&& samples);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -294,4 +294,4 @@ VtkImage openVtkImage(const Path& path, const std::optional<Vec3>& spacing) {
   return image;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

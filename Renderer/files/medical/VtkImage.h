@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct VtkImage {
   Size3 size;
@@ -24,4 +24,4 @@ struct VtkImage {
 /// pieces or components, and more samples than the file can hold.
 VtkImage openVtkImage(const std::filesystem::path& path, const std::optional<Vec3>& spacing = {});
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <span>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -148,4 +148,4 @@ std::vector<SegmentInfo> readClosedSurfaceInfos(const Path& path) {
   return infos;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "files/segments/SegmentationReader.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Labels the voxels whose centers lie inside the surfaces, on the grid `reference` (the volume's);
 /// null: on a grid along the RAS axes, with voxels of 1/256 of the longest extent. Surfaces are in
@@ -15,4 +15,4 @@ Segmentation readClosedSurfaces(const std::filesystem::path& path, const Grid* r
 /// Reads the segments of such a file, without labels.
 std::vector<SegmentInfo> readClosedSurfaceInfos(const std::filesystem::path& path);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -413,4 +413,4 @@ Segmentation makeFrameLabels(const FrameReader& readFrames, const Path& path,
   return segmentation;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Color of RecommendedDisplayCIELabValue (DICOM PS3.3, C.10.7.1.1). The white point is that of
@@ -140,4 +140,4 @@ std::vector<SegmentInfo> readDicomSegmentInfos(const std::filesystem::path& path
   return makeDicomInfos(readObject(files, path), path.string());
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -18,7 +18,7 @@
 
 #include <functional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Reads the segments with their labels; `reference` is the volume's grid, if there is one. Ids are
 /// "Segment_<number>" and "ROI_<number>". Throws Error (input).
@@ -45,4 +45,4 @@ Segmentation makeFrameLabels(const FrameReader& readFrames, const std::filesyste
 Segmentation makeContourLabels(const std::string& source, const DicomStructureSet& object,
                                std::vector<SegmentInfo> segments, const Grid* reference);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Each voxel becomes 2x2x2 with its labels; `layers` labels per voxel.
@@ -39,4 +39,4 @@ void Segmentation::divideVoxels() {
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

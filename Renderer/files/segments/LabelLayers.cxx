@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 
 std::size_t LabelLayers::add(const std::vector<VoxelRun>& runs, Label label) {
   std::size_t layer = 0;
@@ -43,4 +43,4 @@ bool LabelLayers::isFree(std::size_t layer, const std::vector<VoxelRun>& runs) {
   });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class LabelLayers {
 public:
@@ -41,4 +41,4 @@ private:
   LargeArray<Label> m_labels; ///< layer after layer
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

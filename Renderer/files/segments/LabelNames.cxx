@@ -14,7 +14,7 @@
 #include <charconv>
 #include <functional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Collects names; its errors state the source and the place in the table.
@@ -274,4 +274,4 @@ std::optional<LabelNames> parseLabelNamesXml(std::string_view xml, const std::st
   return table.take();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

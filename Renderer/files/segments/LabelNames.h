@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct LabelName {
   std::string name;
@@ -45,4 +45,4 @@ std::vector<std::string> listBuiltInLabelTables();
 /// damaged table; `source` names the file.
 std::optional<LabelNames> parseLabelNamesXml(std::string_view xml, const std::string& source);
 
-} // namespace fenestra
+} // namespace fenestra::core

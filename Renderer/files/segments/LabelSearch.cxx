@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 struct SiblingTable {
@@ -125,4 +125,4 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
   return found;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

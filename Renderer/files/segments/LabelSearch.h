@@ -7,7 +7,7 @@
 
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct FoundNames {
   LabelNames names = {};   ///< empty: the values have no names
@@ -29,4 +29,4 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
                           const std::string& extensions,
                           const std::optional<std::string>& requested);
 
-} // namespace fenestra
+} // namespace fenestra::core

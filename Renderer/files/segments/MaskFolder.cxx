@@ -17,7 +17,7 @@
 #include <string_view>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -205,4 +205,4 @@ Segmentation readMaskFolder(const fs::path& folder, const Grid* reference) {
   return std::move(*all);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// The volume files directly in a folder, sorted, without hidden ones; empty: none.
 std::vector<std::filesystem::path> listMaskFiles(const std::filesystem::path& folder);
@@ -21,4 +21,4 @@ Segmentation readMaskFolder(const std::filesystem::path& folder, const Grid* ref
 /// Names the segments without reading the files, hence also those that are no masks.
 std::vector<SegmentInfo> readMaskFolderInfos(const std::filesystem::path& folder);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <optional>
 #include <type_traits>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Takes the place of a SampleStore: collects runs of samples instead of the samples.
@@ -115,4 +115,4 @@ std::pair<Grid, Labels> labelMask(const MaskRuns& mask, std::int32_t value) {
   return {grid, fill(std::int32_t())};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

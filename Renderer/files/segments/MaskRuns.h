@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Consecutive voxels of a row, by linear index.
 struct MaskRun {
@@ -37,4 +37,4 @@ MaskRuns readMask(const std::filesystem::path& path, const VolumeChoice& choice 
 /// continues; also returns the grid of the box. Without voxels it is the first voxel of the grid.
 std::pair<Grid, Labels> labelMask(const MaskRuns& mask, std::int32_t value);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <array>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Per axis and plane: number of labels that differ from those of the next plane.
@@ -137,4 +137,4 @@ Vec3 estimateNativeVoxels(const Labels& labels, const Size3& size, std::size_t l
           estimateNativeEdge(counts[2])};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <variant>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Labels in the smallest type that holds all values; a voxel's layers are adjacent, x fastest.
 using Labels =
@@ -21,4 +21,4 @@ using Labels =
 /// grids are joined, it is the finest one.
 Vec3 estimateNativeVoxels(const Labels& labels, const Size3& size, std::size_t layerCount);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <array>
 #include <functional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t maxListed = 12; ///< segments in a message
@@ -87,4 +87,4 @@ std::size_t Segmentation::find(const std::string& selector) const {
   throw makeUnknownError(m_source, selector, m_segments);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

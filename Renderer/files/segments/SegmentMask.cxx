@@ -16,7 +16,7 @@
 #include <set>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Inclusive range of voxels; empty until one is added.
@@ -423,4 +423,4 @@ Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& 
   return smooth;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

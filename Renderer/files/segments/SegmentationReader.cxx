@@ -21,7 +21,7 @@
 #include <tuple>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using header::Fields;
@@ -330,4 +330,4 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
   return segmentation;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct SegmentInfo {
   std::string id;
@@ -58,7 +58,7 @@ struct LabelMap {
 /// One or more label maps in layers; segments in different layers may overlap.
 class Segmentation {
 public:
-  using Labels = fenestra::Labels;
+  using Labels = fenestra::core::Labels;
 
   /// `source` is the file name in messages.
   Segmentation(std::string source, const Grid& grid, std::size_t layerCount, Labels labels,
@@ -151,4 +151,4 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
 std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
                                           const std::optional<std::string>& labels = {});
 
-} // namespace fenestra
+} // namespace fenestra::core

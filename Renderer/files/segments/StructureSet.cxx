@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Contour = std::vector<Vec3>;
@@ -316,4 +316,4 @@ Segmentation makeContourLabels(const std::string& source, const DicomStructureSe
   return segmentation;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

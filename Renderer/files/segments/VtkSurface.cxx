@@ -11,7 +11,7 @@
 #include <cstring>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Thrown by the functions below; readVtkSurface adds the file name and a hint.
@@ -196,4 +196,4 @@ VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std:
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

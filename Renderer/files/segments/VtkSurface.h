@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct VtkSurface {
   std::vector<Vec3> points;                            ///< in the file's space
@@ -34,4 +34,4 @@ struct MemoryBudget {
 VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std::string>& fieldData,
                           MemoryBudget& budget);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <map>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 class FocusSearch {
@@ -80,4 +80,4 @@ std::vector<const MrmlNode*> findFocusNodes(MrmlScene& scene, const std::vector<
   return nodes;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

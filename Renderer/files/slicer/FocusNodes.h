@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Segmentations and label maps that have the segments `focus` (ids, names or label values), each
 /// once: for a segment the only visible segmentation that has it, else the only segmentation, else
@@ -16,4 +16,4 @@ namespace fenestra {
 std::vector<const MrmlNode*> findFocusNodes(MrmlScene& scene, const std::vector<std::string>& focus,
                                             const std::optional<std::string>& labels);
 
-} // namespace fenestra
+} // namespace fenestra::core

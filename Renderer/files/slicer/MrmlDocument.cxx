@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t maxNodes = 100'000, maxAttributes = 1'000'000; ///< limits of a scene
@@ -180,4 +180,4 @@ std::string describeNode(const MrmlNode& node) {
   return text;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// One node, like <Volume id="vtkMRMLScalarVolumeNode1" name="CT" ...>.
 struct MrmlNode {
@@ -74,4 +74,4 @@ private:
 /// "CT (vtkMRMLScalarVolumeNode1)", shortened and on one line.
 std::string describeNode(const MrmlNode& node);
 
-} // namespace fenestra
+} // namespace fenestra::core

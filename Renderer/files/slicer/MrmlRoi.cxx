@@ -4,7 +4,7 @@
 #include "io/InputRegistry.h"
 #include "io/JsonNode.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double maxLength = 1e9; ///< mm
@@ -120,4 +120,4 @@ CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi) {
       scene.document.bindError(roi, "its world transform ", "; fix it in the Markups module")));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

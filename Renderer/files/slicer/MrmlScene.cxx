@@ -9,7 +9,7 @@
 
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Paths = std::vector<std::filesystem::path>;
@@ -245,4 +245,4 @@ ViewBackground readViewBackground(const MrmlNode& view) {
   return {bottom, readColor(view, "backgroundColor2", bottom)};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -19,7 +19,7 @@
 #include <variant>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct MrmlScene {
   /// Registers every file that a node names as an input (SceneFiles::registerInputs).
@@ -104,4 +104,4 @@ struct ViewBackground {
 };
 ViewBackground readViewBackground(const MrmlNode& view);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t maxDepth = 1000; ///< maximum number of transforms above a node
@@ -144,4 +144,4 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
                                                      ErrorCode::invalidSceneCamera));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

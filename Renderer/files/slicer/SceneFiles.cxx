@@ -15,7 +15,7 @@
 #include <functional>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::uint64_t maxSceneBytes = std::uint64_t{64} << 20; ///< size of a .mrml, bytes
@@ -331,4 +331,4 @@ std::string SceneFiles::translatePaths(std::string text) const {
   return toOneLine(std::move(text));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class SceneArchive;
 
@@ -95,4 +95,4 @@ private:
   std::set<std::filesystem::path> m_usedFiles; ///< decoded names
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

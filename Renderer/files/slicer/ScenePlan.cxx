@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Nodes = std::vector<const MrmlNode*>;
@@ -263,4 +263,4 @@ ScenePlan planRender(const MrmlDocument& document, const SceneSelection& choice)
   return plan;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Nodes that the user selects, by id or name; nullopt: not selected.
 struct SceneSelection {
@@ -39,4 +39,4 @@ std::vector<SegmentationNodes> listSegmentations(const MrmlDocument& document);
 /// such volume, or a rendering technique has no equivalent in path tracing.
 ScenePlan planRender(const MrmlDocument& document, const SceneSelection& choice);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -48,4 +48,4 @@ std::optional<Path> findSlicerPresets() {
   return home ? findPresets(*home) : std::nullopt;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Path of presets.xml, a scene of named volume properties. Looks in SLICER_HOME (which Slicer sets
 /// for its child processes), then beside the first Slicer launcher in PATH. nullopt: not found.
 std::optional<std::filesystem::path> findSlicerPresets();
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -19,7 +19,7 @@
 #include <new>
 #include <set>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Path = std::filesystem::path;
@@ -306,4 +306,4 @@ Affine parseTransformReply(const Path& path, std::string_view reply) {
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

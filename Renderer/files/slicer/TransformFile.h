@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Reads the affine map of a file, RAS mm. It maps from the parent, ITK's convention for
 /// resampling, which Slicer follows; in some old scenes to the parent
@@ -22,4 +22,4 @@ Affine readLinearTransform(const std::filesystem::path& path);
 /// file is damaged or the child exceeded its limits.
 Affine parseTransformReply(const std::filesystem::path& path, std::string_view reply);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Tolerance, pixels; larger than the rounding error of a projection.
@@ -62,4 +62,4 @@ EmptyPixels::EmptyPixels(const Camera& camera, const MajorantGrid& majorants)
   });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Pixels whose camera rays (anywhere in the box filter's footprint) cross no cell of majorant > 0.
 /// If the background is constant within each pixel, all samples of such a pixel are equal.
@@ -29,4 +29,4 @@ private:
   std::vector<std::uint8_t> m_isOccupied;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -14,7 +14,7 @@
 #include <bit>
 #include <numeric>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Samples per pixel below which a noise estimate is too uncertain to stop the render.
@@ -401,4 +401,4 @@ void renderLeases(const SceneView& scene, const RenderSettings& settings, Render
   });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

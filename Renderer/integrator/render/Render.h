@@ -18,7 +18,7 @@
 #include <functional>
 #include <string>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Inputs of the integrators. Non-owning: all referenced objects must outlive the render.
 struct SceneView {
@@ -155,4 +155,4 @@ struct TileLease {
 void renderLeases(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
                   const std::function<std::optional<TileLease>(RenderResult&)>& next);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Minimum s of a pixel (s: see SamplePlan), relative to the mean s: a few samples can miss rare
@@ -143,4 +143,4 @@ double SamplePlan::Stage::maxRatio() const {
   return std::max(1.0, most / static_cast<double>(m_mean));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

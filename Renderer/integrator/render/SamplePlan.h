@@ -3,7 +3,7 @@
 
 #include "image/Film.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Either all pixels get the same number or, after a pilot, noisier ones get more. The mean of
 /// se^2 / (x^2 + 0.01), Film::noise() squared (x: a pixel's mean, se: its standard error), is
@@ -57,4 +57,4 @@ private:
   std::vector<double> m_sumFrom; ///< sums of m_sorted from each element to the end
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

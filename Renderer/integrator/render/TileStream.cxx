@@ -1,6 +1,6 @@
 #include "integrator/render/TileStream.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 Pass::Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
            const EmptyPixels& empty, const Sampler& sampler, Film& film,
@@ -113,4 +113,4 @@ void TileStream::close(Tile& tile) {
   m_pass.countTile(tile.planned);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

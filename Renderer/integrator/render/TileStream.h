@@ -13,7 +13,7 @@
 #include <functional>
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// State of a pass that all threads share: the samples up to stage `to` of the plan that pixels of
 /// `tiles` lack in the film.
@@ -120,4 +120,4 @@ private:
   std::uint64_t m_next = 0;               ///< next sample in that run
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Clip that shortens camera rays. If a mixture has unclipped components, rays are not shortened:
 /// such components may lie in front of the clipping surface.
@@ -69,4 +69,4 @@ private:
   std::vector<Rgb> m_gradient; ///< one color per row; empty unless the background is a gradient
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include "clip/field/Clip.h"
 #include "model/medium/Medium.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Gradient that the clip's soft cut adds; zero without surface shading.
 template <typename Voxel>
@@ -50,4 +50,4 @@ void forEachMediumSample(const Medium<Voxel>& medium, const Clip& clip, const Ve
   });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct Counters {
   std::uint64_t paths = 0;
@@ -26,4 +26,4 @@ struct Counters {
   }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

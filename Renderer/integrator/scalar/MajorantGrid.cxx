@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Maximum of the transfer function over [low, high]. The interval is widened by the rounding error
@@ -150,4 +150,4 @@ Box MajorantGrid::occupiedBounds() const {
   return {box.lower.cwiseProduct(edge).array() - 0.5, box.upper.cwiseProduct(edge).array() - 0.5};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include "model/medium/TransferFunction.h"
 #include "model/volume/MinMaxGrid.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 class MajorantGrid {
 public:
@@ -53,4 +53,4 @@ private:
   std::vector<Cell> m_cells;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

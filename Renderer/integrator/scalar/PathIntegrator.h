@@ -5,7 +5,7 @@
 #include "integrator/scalar/PathSteps.h"
 #include "integrator/scalar/Tracker.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// `Distances` has the sampling functions of Tracker.
 template <typename Voxel, typename Distances = Tracker<Voxel>>
@@ -48,4 +48,4 @@ private:
   const StopFlag& m_stop;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

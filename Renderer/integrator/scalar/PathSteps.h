@@ -19,7 +19,7 @@
 
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct PathSettings {
   Background background;
@@ -146,7 +146,7 @@ private:
     if (!(factor.maxCoeff() > 0.0) || !(light->radiance.maxCoeff() > 0.0))
       return std::nullopt;
     const double other =
-        light->isDelta ? 0.0 : fenestra::scatteringPdf(scattering, light->direction);
+        light->isDelta ? 0.0 : fenestra::core::scatteringPdf(scattering, light->direction);
     const Rgb radiance = path.throughput * factor * light->radiance / (light->pdf + other);
     return ShadowRay{{point, light->direction}, light->distance, radiance};
   }
@@ -183,4 +183,4 @@ private:
   const PathSettings& m_settings;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

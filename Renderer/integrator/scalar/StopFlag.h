@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Once set, stays true until the work has ended. Unfinished tiles are discarded.
 using StopFlag = std::atomic<bool>;
@@ -16,4 +16,4 @@ inline const StopFlag neverStopped = false;
 /// would cost as much as the step.
 inline constexpr std::uint32_t stopPollInterval = 1024;
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -13,7 +13,7 @@
 
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Delta tracking: t of the first real collision, or infinity. `walk(visit)` calls visit(t,
 /// probability of a real collision) at each tentative collision until visit returns false.
@@ -128,4 +128,4 @@ private:
   const StopFlag& m_stop;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

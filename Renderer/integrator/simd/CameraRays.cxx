@@ -8,7 +8,7 @@
 #include "base/SimdSampler-inl.h"
 #include "integrator/simd/Lookups-inl.h"
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 namespace {
 
 /// Generates the paths' random numbers, and moves samples to their positions within the pixels.
@@ -68,11 +68,11 @@ void beginAll(const SimdMedium& medium, const CameraTable& camera, const CameraS
 }
 
 } // namespace
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace fenestra {
+namespace fenestra::core {
 
 HWY_EXPORT(sampleAll);
 HWY_EXPORT(beginAll);
@@ -120,5 +120,5 @@ void beginPaths(const SimdMedium& medium, const CameraTable& table, const Camera
   paths.rays.size += samples.size;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core
 #endif

@@ -5,7 +5,7 @@
 #include "integrator/scalar/CameraRays.h"
 #include "integrator/simd/PathBatch.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Camera rays as functions of the raster position relative to the image's center. Rays start in
 /// the plane that faces the camera at the depth of the domain's nearest corner (at the camera, if
@@ -29,4 +29,4 @@ struct CameraTable {
 void beginPaths(const SimdMedium& medium, const CameraTable& table, const CameraRays& cameraRays,
                 CameraSamples& samples, PathBatch& paths);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -1,6 +1,6 @@
 #include "integrator/simd/EnvironmentTables.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 bool EnvironmentTables::isSupported(const EnvironmentSampler& sampler) {
   constexpr double maxTotal = 1e20, minTotal = 1e-20;
@@ -30,4 +30,4 @@ EnvironmentTables::EnvironmentTables(const EnvironmentSampler& sampler, double m
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

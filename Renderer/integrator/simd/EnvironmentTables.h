@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// EnvironmentSampler of a map, in float. Its CDFs become alias tables.
 struct EnvironmentTables {
@@ -28,4 +28,4 @@ struct EnvironmentTables {
   EnvironmentTables(const EnvironmentSampler& sampler, double mapPmf);
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// One axis of a voxel grid, for interpolation.
 struct SimdAxis {
@@ -46,4 +46,4 @@ struct SimdLabelWeights {
   const LabelWeights::Plane* planes;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -16,7 +16,7 @@
 #include "base/SimdMath-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 #include "integrator/simd/Medium-inl.h"
 // Used by the ones below:
 #include "integrator/simd/Clip-inl.h"
@@ -26,7 +26,7 @@ namespace fenestra::HWY_NAMESPACE {
 #include "integrator/simd/Shading-inl.h"
 // Traversal of majorant cells:
 #include "integrator/simd/DdaAxis-inl.h"
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

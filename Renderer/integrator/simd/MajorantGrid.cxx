@@ -5,7 +5,7 @@
 #include <atomic>
 #include <bit>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Index arithmetic of an array of cells with a border one cell wide.
@@ -186,4 +186,4 @@ SimdMajorants::SimdMajorants(const MajorantGrid& majorants)
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct SimdMajorants {
   /// Fields of a code: a float's upper bits are the majorant (mm^-1, rounded up; 0: empty). Its
@@ -30,4 +30,4 @@ struct SimdMajorants {
   LargeArray<std::int32_t> codes;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

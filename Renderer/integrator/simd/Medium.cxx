@@ -2,7 +2,7 @@
 
 #include "integrator/simd/Tracker.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 SimdMedium::DepthAxis toSimd(const DepthAxis& axis) {
@@ -158,4 +158,4 @@ SimdTracker::SimdTracker(const Volume& volume, const Domain& domain,
     setContext(m_medium, *style, volume.grid);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class SilhouetteCells;
 
@@ -34,7 +34,7 @@ struct SimdMedium {
     float insideCells;   ///< largest float below the number of cells
     float cellStride;    ///< offset of the next cell in SimdMajorants::codes
   };
-  /// Samples of the clip's depth buffer along one axis: members of fenestra::DepthAxis
+  /// Samples of the clip's depth buffer along one axis: members of fenestra::core::DepthAxis
   /// (clip/focus/DepthBuffer.h) or, with "per", 1 / them; last = size - 1, lastInside = inside - 1.
   struct DepthAxis {
     float perPitch, start, lastInside, before, perFactor, last;
@@ -85,4 +85,4 @@ struct SimdMedium {
   const SilhouetteCells* silhouette = nullptr; ///< for an exact boundary; else null
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

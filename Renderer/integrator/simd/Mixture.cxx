@@ -1,6 +1,6 @@
 #include "integrator/simd/Mixture.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 namespace {
 
@@ -54,4 +54,4 @@ SimdMixture::SimdMixture(const Mixture& mixture, const Grid& volume)
     isUnclipped.push_back(component.isClipped ? 0 : 1);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

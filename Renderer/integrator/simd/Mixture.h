@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Non-owning: the mixture must outlive the object.
 struct SimdMixture {
@@ -26,4 +26,4 @@ struct SimdMixture {
   std::vector<std::int32_t> isUnclipped; ///< per component: 1 if unclipped, else 0
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

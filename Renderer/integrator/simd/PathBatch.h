@@ -3,7 +3,7 @@
 
 #include "integrator/simd/Tracker.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Samples for which paths start, each with its pixel.
 struct CameraSamples {
@@ -43,4 +43,4 @@ struct PathBatch {
   std::array<std::uint64_t, RayBatch::capacity / 64> ended;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <bit>
 #include <memory>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class SimdPathIntegrator {
 public:
@@ -100,4 +100,4 @@ private:
   const StopFlag& m_stop;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 // After foreach_target.h:
 #include "integrator/simd/Lookups-inl.h"
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 #include "integrator/simd/LightSet-inl.h"
 #include "model/medium/ScatteringFormulas-inl.h"
 namespace {
@@ -294,11 +294,11 @@ void dropEndedLanes(PathBatch& paths) {
 }
 
 } // namespace
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace fenestra {
+namespace fenestra::core {
 
 HWY_EXPORT(scatterAll);
 HWY_EXPORT(dropEndedLanes);
@@ -312,5 +312,5 @@ void dropEnded(PathBatch& paths) {
   HWY_DYNAMIC_DISPATCH(dropEndedLanes)(paths);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core
 #endif

@@ -6,7 +6,7 @@
 #include "integrator/simd/PathBatch.h"
 #include "integrator/simd/Shading.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Shadow rays: `radiance` times the transmittance of a ray is added to `path`.
 struct ShadowBatch {
@@ -24,4 +24,4 @@ void scatterPaths(const SimdMedium& medium, const SimdShading& shading, PathBatc
 /// Removes ended paths from the batch; the others move up, so that there are no gaps.
 void dropEnded(PathBatch& paths);
 
-} // namespace fenestra
+} // namespace fenestra::core

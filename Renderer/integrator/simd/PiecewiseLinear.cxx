@@ -2,7 +2,7 @@
 
 #include "base/Narrow.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t lineCount = 1024; ///< bins per function, each with one line
@@ -96,4 +96,4 @@ SimdLines::SimdLines(const std::vector<const ScalarFunction*>& functions) {
   last = static_cast<float>(count - 1);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Segment i spans position[i] to position[i + 1]; there a channel is value + slope (s -
 /// position[i]). The first segment starts at -infinity, the last ends at infinity. Value and slope
@@ -45,4 +45,4 @@ struct SimdLines {
   float last = 0.0F;               ///< count - 1
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

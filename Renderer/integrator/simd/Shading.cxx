@@ -1,6 +1,6 @@
 #include "integrator/simd/Shading.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 bool hasWideLobes(const TransferFunction& transfer) {
@@ -82,4 +82,4 @@ SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, con
                      !lights.spheres.empty() || !maps.empty();
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

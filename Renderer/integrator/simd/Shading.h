@@ -12,7 +12,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// "Local" space has world axes, mm, and its origin at the volume's center, so that floats keep
 /// their precision wherever the volume lies.
@@ -46,4 +46,4 @@ struct SimdShading {
   AffineRows indexDifferenceToGradient;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

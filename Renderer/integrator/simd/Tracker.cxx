@@ -15,7 +15,7 @@
 // After foreach_target.h:
 #include "integrator/simd/Lookups-inl.h"
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 namespace {
 
 /// Idle lanes take new rays once there are this many.
@@ -256,11 +256,11 @@ void trackAll(const SimdMedium& medium, RayBatch& rays, bool wantRatio, const St
 }
 
 } // namespace
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace fenestra {
+namespace fenestra::core {
 
 HWY_EXPORT(trackAll);
 
@@ -272,5 +272,5 @@ void SimdTracker::estimateTransmittances(RayBatch& rays, Counters& counters) con
   HWY_DYNAMIC_DISPATCH(trackAll)(m_medium, rays, true, m_stop, counters);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core
 #endif

@@ -19,7 +19,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// One element per ray of a batch, padded by the maximum number of lanes, so that complete vectors
 /// can be loaded and stored.
@@ -86,4 +86,4 @@ private:
   const StopFlag& m_stop;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

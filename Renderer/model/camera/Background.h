@@ -3,7 +3,7 @@
 
 #include "model/medium/VolumeProperty.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct Background {
   enum class Kind { color, gradient, transparent, environment };
@@ -33,4 +33,4 @@ struct Background {
   Rgb evaluate(double height) const { return decodeSrgb(bottom + height * (top - bottom)); }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

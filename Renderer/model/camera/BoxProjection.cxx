@@ -1,6 +1,6 @@
 #include "model/camera/BoxProjection.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 BoxProjection::BoxProjection(const Camera& camera, const Affine& boxesToWorld)
     : m_perspective(camera.pose().projection == Projection::perspective),
@@ -31,4 +31,4 @@ BoxProjection::Bounds BoxProjection::project(const Size3& box) const {
   return bounds;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

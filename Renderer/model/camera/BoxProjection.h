@@ -3,7 +3,7 @@
 
 #include "model/camera/Camera.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Boxes [i, i + 1] for integer triples i, in a space with an affine map to world space.
 class BoxProjection {
@@ -26,4 +26,4 @@ private:
   Vec3 m_half; ///< half extent of any box in view space, mm
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

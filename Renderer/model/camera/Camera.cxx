@@ -1,6 +1,6 @@
 #include "model/camera/Camera.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 Vec3 computeRight(const Vec3& forward, const Vec3& up) {
@@ -47,4 +47,4 @@ Camera::Camera(const CameraPose& pose, int width, int height)
   m_pixelPitch = 2.0 * halfHeight / height;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

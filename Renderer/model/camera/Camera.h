@@ -4,7 +4,7 @@
 
 #include "base/CheckAffine.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class Projection { orthographic, perspective };
 
@@ -80,4 +80,4 @@ private:
   double m_targetDepth, m_pixelPitch;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

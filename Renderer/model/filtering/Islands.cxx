@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Runs of voxels above a level, row after row, and which of them are connected.
@@ -129,4 +129,4 @@ void removeIslands(Volume& volume, const Islands& islands, double onset) {
   computeRange(volume);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

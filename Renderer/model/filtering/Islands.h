@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct RunOfIsland {
   std::int64_t begin, end; ///< voxels of one row, by linear index
@@ -31,4 +31,4 @@ Islands findIslands(const Volume& volume, double onset, double largest,
 /// Lowers the voxels of islands to `onset`, rounded down for integers. `volume`: of the same grid.
 void removeIslands(Volume& volume, const Islands& islands, double onset);
 
-} // namespace fenestra
+} // namespace fenestra::core

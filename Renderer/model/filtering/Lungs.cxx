@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr float highestAir = -400.0F;   // HU; the walls of vessels and of the chest are above it
@@ -156,4 +156,4 @@ std::optional<Lungs> findLungs(const Volume& ct) {
   return lungs;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

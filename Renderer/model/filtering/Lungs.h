@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct Lungs {
   Grid grid = {};      ///< cells of about 1.5 mm, each of whole voxels
@@ -21,4 +21,4 @@ struct Lungs {
 /// part of the chest, are not found.
 std::optional<Lungs> findLungs(const Volume& ct);
 
-} // namespace fenestra
+} // namespace fenestra::core

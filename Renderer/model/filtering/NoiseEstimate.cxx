@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Window of voxels around a center.
@@ -156,4 +156,4 @@ double estimateNoise(const Volume& volume, Modality modality) {
   return 0.0;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "model/volume/Volume.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Standard deviation of the noise in scalar units; for ultrasound, whose speckle is
 /// multiplicative, that of log(1 + scalar - minimum). 0 if the volume has too few voxels of tissue.
@@ -21,4 +21,4 @@ double estimateNoise(const Volume& volume, Modality modality);
 /// Axis with the greatest distance between voxels; the last of equal ones.
 int findSliceAxis(const Grid& grid);
 
-} // namespace fenestra
+} // namespace fenestra::core

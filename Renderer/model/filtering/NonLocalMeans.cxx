@@ -16,7 +16,7 @@
 // After foreach_target.h:
 #include "base/Simd-inl.h"
 HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+namespace fenestra::core::HWY_NAMESPACE {
 namespace {
 
 /// Squared differences between two rows, summed over three columns.
@@ -87,11 +87,11 @@ void averagePatches(PatchTile& tile) {
 }
 
 } // namespace
-} // namespace fenestra::HWY_NAMESPACE
+} // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace fenestra {
+namespace fenestra::core {
 
 HWY_EXPORT(averagePatches);
 
@@ -216,5 +216,5 @@ Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter) {
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core
 #endif

@@ -4,7 +4,7 @@
 
 #include "model/volume/Volume.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct NonLocalMeans {
   double noise;    ///< standard deviation s, scalar units
@@ -25,4 +25,4 @@ Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter);
 /// Copy of a volume without its voxels and their range.
 Volume copyWithoutVoxels(const Volume& volume);
 
-} // namespace fenestra
+} // namespace fenestra::core

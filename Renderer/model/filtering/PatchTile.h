@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Sums of a row of voxels.
 struct PatchSums {
@@ -68,4 +68,4 @@ private:
   std::vector<float> m_slices, m_sums;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

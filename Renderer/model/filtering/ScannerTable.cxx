@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::int64_t unknownRow = -1;
@@ -230,4 +230,4 @@ double removeScannerTable(const ScannerTable& table, const Mask* preserved, Volu
          std::abs(ct.grid.indexToWorld.linear().determinant());
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

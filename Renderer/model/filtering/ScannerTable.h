@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Axes of a grid that are nearest to those of the patient.
 struct PatientAxes {
@@ -39,4 +39,4 @@ std::optional<ScannerTable> findScannerTable(const Volume& ct);
 /// above -500 HU, mm^3.
 double removeScannerTable(const ScannerTable& table, const Mask* preserved, Volume& ct);
 
-} // namespace fenestra
+} // namespace fenestra::core

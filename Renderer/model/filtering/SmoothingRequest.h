@@ -1,7 +1,7 @@
 #pragma once
 // Which requests are rendered from a smoothed volume.
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// --volume-smoothing
 struct SmoothingRequest {
@@ -28,4 +28,4 @@ inline bool isSmoothed(const SmoothingRequest& request, const SmoothingPurpose& 
   return (purpose.hasDisplayImage || purpose.isServer) && !purpose.isShard;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double cellEdge = 2.0;      ///< mm
@@ -302,4 +302,4 @@ std::optional<Sheet> findSheet(const SolidVoxels& solid) {
   return std::nullopt;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 inline constexpr double thickestSheet = 14.0; ///< mm
 inline constexpr double greatestSag = 6.0;    ///< mm, of a sheet along the patient
@@ -61,4 +61,4 @@ bool mayHaveSheet(const SolidVoxels& solid);
 /// The uppermost sheet that can be a table's top; nullopt: none.
 std::optional<Sheet> findSheet(const SolidVoxels& solid);
 
-} // namespace fenestra
+} // namespace fenestra::core

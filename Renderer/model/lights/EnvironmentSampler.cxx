@@ -2,7 +2,7 @@
 
 #include "base/Random.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 struct CdfSample {
@@ -101,4 +101,4 @@ Vec3 EnvironmentSampler::sample(const Vec2& u) const {
   return {sine * std::sin(phi), sine * std::cos(phi), z};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 
 #include "model/lights/Light.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 class EnvironmentSampler {
 public:
@@ -45,4 +45,4 @@ private:
   double m_integral = 0.0;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Scalar measure of a radiance for choosing between lights and between texels.
 inline double brightness(const Rgb& radiance) {
@@ -71,4 +71,4 @@ struct SphereLight {
 
 using Light = std::variant<EnvironmentLight, DirectionalLight, AreaLight, SkyLight, SphereLight>;
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -1,6 +1,6 @@
 #include "model/lights/LightSet.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Lower bound of a light's pmf, relative to uniform selection: a light that is dark at the
@@ -147,4 +147,4 @@ bool LightSet::hasMaps() const {
   return std::ranges::any_of(m_environments, [](const auto& e) { return !e.sampler.isConstant(); });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

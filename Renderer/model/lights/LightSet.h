@@ -13,11 +13,11 @@
 
 #include <optional>
 
-namespace fenestra::scalar {
+namespace fenestra::core::scalar {
 #include "model/lights/LightFormulas-inl.h"
-} // namespace fenestra::scalar
+} // namespace fenestra::core::scalar
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct LightSample {
   Vec3 direction;  ///< unit, from the point toward the light
@@ -98,4 +98,4 @@ private:
   std::vector<PlacedEnvironment> m_environments;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 template <typename Real>
 struct LightTables {
@@ -67,4 +67,4 @@ struct LightTables {
   }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

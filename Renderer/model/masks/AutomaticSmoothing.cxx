@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Radius, in native edges, of the ball that does not fit into thin parts; and their part of sigma.
@@ -81,4 +81,4 @@ Mask smoothMaskAuto(const Mask& mask, double native, const Grid& volume) {
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::size_t noPlane = std::numeric_limits<std::size_t>::max();
@@ -248,4 +248,4 @@ std::optional<std::vector<VoxelRun>> fillContours(const std::vector<ContourPlane
   return runs;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Closed polygons in the plane z of a grid's index space. Inside is what an odd number of polygons
 /// encloses: holes may be polygons of their own, or joined to the outline (keyhole).
@@ -30,4 +30,4 @@ std::optional<std::vector<VoxelRun>> fillContours(const std::vector<ContourPlane
                                                   const Size3& size, const Vec2& spacing,
                                                   const ContourReach& reach);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Squared distances along rows to the nearest marked voxel, limited to `most`.
@@ -56,4 +56,4 @@ std::vector<float> computeDistances(const Marks& marks, const Grid& grid, double
   return squared;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 using Marks = std::vector<std::uint8_t>; ///< 1: voxels of a set; x fastest
 
@@ -13,4 +13,4 @@ using Marks = std::vector<std::uint8_t>; ///< 1: voxels of a set; x fastest
 /// grid's axes are orthogonal. Time grows with `most` per voxel edge.
 std::vector<float> computeDistances(const Marks& marks, const Grid& grid, double most);
 
-} // namespace fenestra
+} // namespace fenestra::core

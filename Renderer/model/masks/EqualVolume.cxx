@@ -10,7 +10,7 @@
 #include <cmath>
 #include <functional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// A function of voxel values.
@@ -277,4 +277,4 @@ void equalizeVolume(const Mask& labels, const Grid& volume, Mask& smooth) {
     voxel = values[voxel];
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

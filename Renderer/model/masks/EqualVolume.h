@@ -3,7 +3,7 @@
 
 #include "model/volume/Mask.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Volume in the smoothed mask's surface divided by the labels' volume, minus 1. `labels` may be
 /// interpolated; then its volumeChange is included.
@@ -13,4 +13,4 @@ double measureVolumeChange(const Mask& labels, const Mask& smooth, const Grid& v
 /// volume, with 0 and 255 unchanged.
 void equalizeVolume(const Mask& labels, const Grid& volume, Mask& smooth);
 
-} // namespace fenestra
+} // namespace fenestra::core

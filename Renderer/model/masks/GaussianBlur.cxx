@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Kernel weights from the center outward, w[0] + 2 (w[1] + ...) = 1.
@@ -156,4 +156,4 @@ std::vector<std::uint8_t> blurMask(const Mask& mask, const Size3& first, const S
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

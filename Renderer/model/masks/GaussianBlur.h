@@ -4,7 +4,7 @@
 
 #include "model/volume/Mask.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Blurs a region of the mask's index space, from voxel `first` on; 255 is an indicator of 1.
 /// `sigmas`: standard deviation along each axis, voxels. The Gaussian is sampled at voxels and
@@ -12,4 +12,4 @@ namespace fenestra {
 std::vector<std::uint8_t> blurMask(const Mask& mask, const Size3& first, const Size3& size,
                                    const Vec3& sigmas);
 
-} // namespace fenestra
+} // namespace fenestra::core

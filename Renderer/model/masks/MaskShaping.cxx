@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using ItkImage = itk::Image<float, 3>;
@@ -214,4 +214,4 @@ Mask smoothMask(const Mask& mask, double sigma, const Grid& volume) {
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct MaskShaping {
   /// Margin per chosen segment, in their order, or a single one for their union, mm; > 0 grows, < 0
@@ -56,4 +56,4 @@ Mask smoothMask(const Mask& mask, double sigma, const Grid& volume);
 /// remain. Masks with extremely anisotropic voxels stay unchanged.
 Mask smoothMaskAuto(const Mask& mask, double native, const Grid& volume);
 
-} // namespace fenestra
+} // namespace fenestra::core

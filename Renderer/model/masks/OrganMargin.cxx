@@ -8,7 +8,7 @@
 #include <array>
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double deep = 8.0;              ///< mm below the surface, where voxels are surely organ
@@ -336,4 +336,4 @@ OrganMargin findOrganMargin(const Mask& segment, const Volume& volume) {
   return margin;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include "model/volume/Mask.h"
 #include "model/volume/Volume.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Thinner voxels have margins, mm. Thick ones would leave steps as deep as what is removed.
 inline constexpr double thickestVoxel = 3.0;
@@ -32,4 +32,4 @@ struct OrganMargin {
 /// `volume`: CT, with or without noise. Time and memory grow with the mask's grid.
 OrganMargin findOrganMargin(const Mask& segment, const Volume& volume);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <array>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double coarseSpacing = 2.0; ///< mm; approximate spacing of the subsampled grid
@@ -200,4 +200,4 @@ Mask resampleMask(const Mask& layer, const Grid& labels, const Grid& volume) {
   return mask;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

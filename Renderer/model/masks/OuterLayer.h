@@ -5,7 +5,7 @@
 #include "model/volume/Mask.h"
 #include "model/volume/Volume.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Indicator, 255 for 1, of the air around the body and of its tissue less than `depth` mm below
 /// the surface, with an edge about a millimeter wide. Air: scalars below `airBelow` connected with
@@ -18,4 +18,4 @@ Mask findOuterLayer(const Volume& volume, double airBelow, double depth);
 /// than 2^24 voxels and of more than eight per voxel of the volume is replaced by a single 0.
 Mask resampleMask(const Mask& layer, const Grid& labels, const Grid& volume);
 
-} // namespace fenestra
+} // namespace fenestra::core

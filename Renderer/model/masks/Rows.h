@@ -5,7 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Calls visit(y, z, index of the first voxel) for each row, in parallel.
 template <typename Visitor>
@@ -16,4 +16,4 @@ void forEachRow(const Size3& size, const Visitor& visit) {
   });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Axis along which voxels are longest, and the number of slices that replace one. It is odd: then
@@ -188,4 +188,4 @@ Mask interpolateSlices(Mask mask) {
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 using Word = std::uint64_t;
@@ -177,4 +177,4 @@ ThinParts findThinParts(const Mask& mask, const Size3& first, const Size3& size,
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include "model/volume/Mask.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Voxels of a region, x fastest.
 struct ThinParts {
@@ -17,4 +17,4 @@ struct ThinParts {
 /// mask's grid the nearest voxel repeats.
 ThinParts findThinParts(const Mask& mask, const Size3& first, const Size3& size, double radius);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 struct Crossing {
@@ -108,4 +108,4 @@ voxelizeSurface(const std::vector<Vec3>& points,
   return runs;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Voxels [first, last) along x in the row (y, z).
 struct VoxelRun {
@@ -24,4 +24,4 @@ std::optional<std::vector<VoxelRun>>
 voxelizeSurface(const std::vector<Vec3>& points,
                 const std::vector<std::array<std::uint32_t, 3>>& triangles, const Size3& size);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// `Number`: a plain number, or one per SIMD lane.
 template <typename Number>
@@ -29,4 +29,4 @@ struct BsdfParameters {
 /// Without shading, the surface lobes reflect nothing.
 BsdfParameters<double> makeBsdfParameters(double g, const std::optional<SurfaceShading>& shading);
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Directional albedo of the GGX lobe: mean weight of its samples on a regular grid. There is no
@@ -43,4 +43,4 @@ CoatReflectance fitCoatReflectance(double roughness) {
   return {fit[0] + std::max(0.0, missing), fit[1], fit[2], fit[3]};
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Schlick's F0 of tissue in air, refractive index 1.4.
 inline constexpr double tissueF0 = 0.028;
@@ -28,4 +28,4 @@ struct CoatReflectance {
 /// most 0.005 for a roughness of at least 0.2, and 0.07 at 0.05 and grazing angles.
 CoatReflectance fitCoatReflectance(double roughness);
 
-} // namespace fenestra
+} // namespace fenestra::core

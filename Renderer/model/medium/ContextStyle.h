@@ -9,7 +9,7 @@
 
 #include <memory>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Applies where the focus's indicator is below 1/2. The focus is unchanged.
 struct ContextStyle {
@@ -45,4 +45,4 @@ private:
   double m_level;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

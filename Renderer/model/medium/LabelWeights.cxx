@@ -10,7 +10,7 @@
 #include <functional>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// A number per voxel of a brick, in 255ths: integers, so that sums do not depend on the order.
@@ -289,4 +289,4 @@ double LabelWeights::pureFraction() const {
          static_cast<double>(m_bricks.size());
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

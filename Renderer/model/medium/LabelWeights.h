@@ -16,7 +16,7 @@
 #include <functional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class LabelWeights {
 public:
@@ -151,4 +151,4 @@ void LabelWeights::forEachWeight(const Vec3& index, Visit&& visit) const {
   }
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -2,7 +2,7 @@
 
 #include "model/medium/Reflectance.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 std::optional<ColorFunction> toReflectanceColor(const Material& material) {
   if (!material.color || !material.colorIsAlbedo)
@@ -13,4 +13,4 @@ std::optional<ColorFunction> toReflectanceColor(const Material& material) {
   });
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -20,7 +20,7 @@
 
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 enum class MaterialKind { tint, medium };
 
@@ -52,4 +52,4 @@ struct SegmentMedium {
   double density = 1.0;  ///< factor on the extinction
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,7 +10,7 @@
 
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Optical properties at a real collision.
 struct MediumSample {
@@ -145,4 +145,4 @@ private:
 template <typename Voxels, typename... More>
 Medium(const Grid&, const Voxels&, const More&...) -> Medium<typename Voxels::value_type>;
 
-} // namespace fenestra
+} // namespace fenestra::core

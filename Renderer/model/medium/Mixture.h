@@ -21,7 +21,7 @@
 #include <optional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Optical properties of a component.
 struct Component {
@@ -145,4 +145,4 @@ private:
   bool m_hasUnclipped, m_needsGradient;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr std::ptrdiff_t maxRun = 128; ///< maximum length of a run or of a literal stretch
@@ -84,4 +84,4 @@ bool PackedMask::unpackRow(std::int64_t y, std::int64_t z, std::uint8_t* to) con
   return true;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

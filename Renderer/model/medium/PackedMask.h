@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 class PackedMask {
 public:
@@ -31,4 +31,4 @@ private:
   std::vector<Slice> m_slices;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

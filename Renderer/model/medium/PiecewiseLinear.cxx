@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-namespace fenestra {
+namespace fenestra::core {
 
 template <int Channels>
 PiecewiseLinear<Channels>::PiecewiseLinear(std::vector<Knot> knots) : m_knots(std::move(knots)) {
@@ -46,4 +46,4 @@ std::array<double, 2> PiecewiseLinear<Channels>::range(double low, double high) 
 template class PiecewiseLinear<1>;
 template class PiecewiseLinear<3>;
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 template <int Channels>
 class PiecewiseLinear {
@@ -73,4 +73,4 @@ extern template class PiecewiseLinear<3>;
 using ScalarFunction = PiecewiseLinear<1>;
 using ColorFunction = PiecewiseLinear<3>;
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -2,7 +2,7 @@
 
 #include "model/medium/ReflectanceTable.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Reflectance by similarity parameter s = sqrt((1 - a) / (1 - g a)): media of different g and
@@ -57,4 +57,4 @@ ColorFunction toAlbedo(const ColorFunction& colors, double g) {
   return ColorFunction(std::move(knots));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

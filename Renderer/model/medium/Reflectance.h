@@ -4,7 +4,7 @@
 
 #include "model/medium/PiecewiseLinear.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Reflectance of a half-space (plane albedo): radiance along the normal under uniform light of
 /// radiance 1, by single-scattering albedo, 0 to 1, and Henyey-Greenstein mean cosine g. The table
@@ -28,4 +28,4 @@ inline Rgb toAlbedo(const Rgb& color, double g) {
 /// not: added knots approximate it, within 2 % of the color for g = 0.
 ColorFunction toAlbedo(const ColorFunction& colors, double g);
 
-} // namespace fenestra
+} // namespace fenestra::core

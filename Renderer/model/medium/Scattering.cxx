@@ -2,7 +2,7 @@
 
 #include "model/medium/Reflectance.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Lower limit: directions in double cannot resolve a narrower lobe, and its density overflows.
@@ -71,4 +71,4 @@ ScatterSample SurfaceScattering::sample(double choice, const Vec2& u) const {
   return toSample(m_lobes.sample(choice, u.x(), u.y()));
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -10,11 +10,11 @@
 
 #include <variant>
 
-namespace fenestra::scalar {
+namespace fenestra::core::scalar {
 #include "model/medium/ScatteringFormulas-inl.h"
-} // namespace fenestra::scalar
+} // namespace fenestra::core::scalar
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct ScatterSample {
   Vec3 outgoing;
@@ -68,4 +68,4 @@ inline ScatterSample sampleScattering(const Scattering& s, const Vec2& u, Random
   return std::get<PhaseScattering>(s).sample(u);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

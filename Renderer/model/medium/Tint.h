@@ -10,7 +10,7 @@
 #include <memory>
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 struct Tint {
   std::shared_ptr<const LabelWeights> weights;
@@ -40,4 +40,4 @@ private:
   Affine m_toWeights;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Surface lobes of hybrid shading: Lambert with the albedo, and GGX with Schlick's Fresnel term.
 struct SurfaceShading {
@@ -66,4 +66,4 @@ struct TransferFunction {
   }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -4,7 +4,7 @@
 
 #include <queue>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 constexpr double opacityCap = 0.9999;
@@ -247,4 +247,4 @@ TransferFunction tabulate(const VolumeProperty& property, const std::string& sou
   return result;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// A node of vtkPiecewiseFunction, or of vtkColorTransferFunction in RGB: midpoint and sharpness
 /// shape the curve toward the next node.
@@ -43,4 +43,4 @@ double evaluateCurve(double u, double midpoint, double sharpness);
 /// at most 1e-4. Throws Error (input) for an empty node list or an invalid number; `source`: file.
 TransferFunction tabulate(const VolumeProperty& property, const std::string& source);
 
-} // namespace fenestra
+} // namespace fenestra::core

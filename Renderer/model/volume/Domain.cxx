@@ -1,6 +1,6 @@
 #include "model/volume/Domain.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 /// Adds the points (index space) where edges of `box` enter and leave `other`. `toOther` maps from
@@ -52,4 +52,4 @@ std::vector<Vec3> Domain::indexCorners() const {
   return points;
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

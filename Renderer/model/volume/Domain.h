@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// A parallelepiped in world space; the medium is empty outside of it.
 struct CropBox {
@@ -65,4 +65,4 @@ private:
   std::optional<Crop> m_crop;
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

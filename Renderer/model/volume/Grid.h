@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Linear index of a voxel (or cell) in a grid of `size`, x fastest.
 inline std::size_t linearIndex(const Size3& voxel, const Size3& size) {
@@ -40,4 +40,4 @@ struct Grid {
   }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Iterates over the cells along a ray. The ray is in cell space, where cell c fills [c, c + 1] in
 /// each axis. The caller chooses the unit of t (usually world mm).
@@ -109,4 +109,4 @@ private:
   double m_end; ///< t at which the traversal ends
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

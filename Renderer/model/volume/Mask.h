@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// The indicator at a voxel center is 1 in a chosen segment, else 0; in a smoothed label map it is
 /// between 0 and 1. It is trilinear between centers, and its 1/2 level is the surface. Readers crop
@@ -40,4 +40,4 @@ struct Mask {
   std::uint8_t threshold() const { return static_cast<std::uint8_t>(maxValue - maxValue / 2); }
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

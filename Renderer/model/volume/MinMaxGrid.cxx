@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 struct Span {
@@ -101,4 +101,4 @@ void MinMaxGrid::fill(const Grid& grid, const LargeArray<Voxel>& voxels) {
   tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), fillSlab);
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

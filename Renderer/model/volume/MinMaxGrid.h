@@ -3,7 +3,7 @@
 
 #include "model/volume/Volume.h"
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Cell c spans [c, c + 1] * cellSize() - 0.5 in index space, per axis. Its range covers every
 /// voxel that trilinear interpolation in the cell can read, plus `padding` voxels on every side (1
@@ -32,4 +32,4 @@ private:
   std::vector<float> m_low, m_high; ///< exact: float represents every voxel value
 };
 
-} // namespace fenestra
+} // namespace fenestra::core

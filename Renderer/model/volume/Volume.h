@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Kind of scan. CT scalars are Hounsfield units, those of PET standardized uptake values (SUV,
 /// g/ml) if the file allows it; MR and ultrasound have no standard unit.
@@ -171,4 +171,4 @@ private:
 template <typename Voxels>
 Field(const Grid&, const Voxels&) -> Field<typename Voxels::value_type>;
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -6,7 +6,7 @@
 #include "program/about/Commit.h"
 #include "program/about/Version.h"
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 nlohmann::ordered_json collectFacts() {
@@ -48,4 +48,4 @@ std::string aboutJson() {
   return dumpJson(collectFacts());
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

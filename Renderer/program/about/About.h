@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace fenestra {
+namespace fenestra::core {
 
 /// Names and versions of the libraries: of the loaded library if it reports one, else of its
 /// headers.
@@ -17,4 +17,4 @@ std::string aboutText();
 /// The facts as one JSON document.
 std::string aboutJson();
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -24,7 +24,7 @@
 
 #include <array>
 
-namespace fenestra {
+namespace fenestra::core {
 namespace {
 
 std::string joinVersion(std::initializer_list<std::size_t> parts) {
@@ -67,4 +67,4 @@ std::vector<std::pair<std::string, std::string>> libraryVersions() {
   };
 }
 
-} // namespace fenestra
+} // namespace fenestra::core

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace fenestra::testing {
+namespace fenestra::core::testing {
 
 /// Hash of a name (FNV-1a), which compares faster than its text.
 constexpr std::uint32_t mutationKey(std::string_view name) {
@@ -18,8 +18,8 @@ constexpr std::uint32_t mutationKey(std::string_view name) {
 /// Key of the active mutation; 0: none.
 inline std::uint32_t activeMutation = 0;
 
-} // namespace fenestra::testing
+} // namespace fenestra::core::testing
 
 #define MUTANT(name)                                                                               \
-  (::fenestra::testing::activeMutation ==                                                          \
-   std::integral_constant<std::uint32_t, ::fenestra::testing::mutationKey(#name)>::value)
+  (::fenestra::core::testing::activeMutation ==                                                    \
+   std::integral_constant<std::uint32_t, ::fenestra::core::testing::mutationKey(#name)>::value)
