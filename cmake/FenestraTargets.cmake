@@ -27,6 +27,13 @@ if(FENESTRA_FUZZING)
   target_compile_options(fenestra_reading INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
+# fenestra_hide(TARGETS...): for libraries that are part of the shared library libfenestra, which exports its public
+# interface alone.
+function(fenestra_hide)
+  set_target_properties(${ARGN} PROPERTIES
+    POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+endfunction()
+
 # fenestra_precompile(NAME headers...): headers that targets with the same compiler options share by
 # `target_precompile_headers(TARGET REUSE_FROM NAME)`.
 function(fenestra_precompile name)
@@ -42,6 +49,7 @@ fenestra_precompile(fenestra_reading_headers
   <algorithm> <array> <charconv> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <span> <sstream>
   <string> <vector> <Eigen/Core> <nlohmann/json.hpp> <tbb/parallel_for.h>)
 target_link_libraries(fenestra_reading_headers PRIVATE fenestra_reading)
+fenestra_hide(fenestra_reading_headers)
 
 # fenestra_simd_sources(sources...): sources that Highway compiles once per instruction set. A multiplication
 # and an addition are fused only where the source says so: results must not depend on inlining.
@@ -78,6 +86,7 @@ function(fenestra_library folder)
   get_filename_component(name ${folder} NAME)
   set(target fenestra_${name})
   add_library(${target} STATIC ${arg_UNPARSED_ARGUMENTS})
+  fenestra_hide(${target})
   set(root "${PROJECT_BINARY_DIR}/include/${name}")
   file(REMOVE_RECURSE "${root}")
   file(MAKE_DIRECTORY "${root}/${folder}")
