@@ -107,11 +107,11 @@ OrganPreset choosePreset(const OptionValues& given, const Input& input,
   const auto listNonEmpty = [&] {
     InputChoice choice = makeChoice(given);
     choice.focus = makeSelectors(candidates, names->segments);
-    return selectNonEmpty(candidates, input.segments(choice).segmentation);
+    return selectNonEmpty(candidates, input.segments(choice)->segmentation);
   };
   return findMatchingPreset(
       presets, candidates, names->source, listNonEmpty, [&](Modality modality) {
-        return isPlausibleModality(modality, input.volume(readVolumeChoice(given)).volume);
+        return isPlausibleModality(modality, input.volume(readVolumeChoice(given))->volume);
       });
 }
 

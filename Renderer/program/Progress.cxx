@@ -1,5 +1,7 @@
 #include "program/Progress.h"
 
+#include "scene/FinishedImage.h"
+
 #include <cstdio>
 #include <system_error>
 
@@ -55,13 +57,7 @@ double Progress::fraction() const {
 }
 
 double Progress::frameFraction() const {
-  const double paths = static_cast<double>(m_monitor.paths);
-  double most = std::max(paths / (static_cast<double>(m_settings.samples) * m_pixels),
-                         m_frameWatch.seconds() / m_settings.seconds);
-  const double noise = m_monitor.noise;
-  if (m_settings.noise > 0.0 && noise > 0.0) // variance is proportional to 1 / samples
-    most = std::max(most, std::pow(m_settings.noise / noise, 2.0));
-  return std::clamp(most, 0.0, 1.0);
+  return estimateFraction(m_monitor, m_settings, m_pixels, m_frameWatch.seconds());
 }
 
 void Progress::show(bool last) {

@@ -1,20 +1,11 @@
 #include "program/Quality.h"
 
+#include "scene/QualityLevels.h"
+
 #include <algorithm>
 
 namespace fenestra::core {
 namespace {
-
-struct Level {
-  const char* name;
-  const char* samples;
-  const char* noise; ///< null: not limited
-};
-
-constexpr Level levels[] = {{"draft", "16", nullptr},
-                            {"normal", "256", "0.05"},
-                            {"high", "1024", "0.025"},
-                            {"final", "4096", "0.015"}};
 
 constexpr const char* stopOptions[] = {"samples", "seconds", "noise"};
 
@@ -22,17 +13,17 @@ constexpr const char* stopOptions[] = {"samples", "seconds", "noise"};
 
 std::vector<std::string> listQualityNames() {
   std::vector<std::string> names;
-  for (const Level& level : levels)
+  for (const QualityLevel& level : qualityLevels)
     names.emplace_back(level.name);
   return names;
 }
 
 std::string describeQuality() {
-  const auto describe = [](const Level& level) {
+  const auto describe = [](const QualityLevel& level) {
     return concat(level.name, " (--samples ", level.samples,
-                  level.noise ? concat(" --noise ", level.noise) : "", ")");
+                  level.noise > 0.0 ? concat(" --noise ", toString(level.noise)) : "", ")");
   };
-  return concat("Stops the render at a level of quality: ", join(levels, ", ", describe),
+  return concat("Stops the render at a level of quality: ", join(qualityLevels, ", ", describe),
                 "; --samples, --noise or --seconds replaces all that it sets");
 }
 
@@ -44,11 +35,11 @@ OptionValues expandQuality(const OptionValues& values) {
   expanded.remove("quality");
   if (std::ranges::any_of(stopOptions, [&](const char* option) { return values.has(option); }))
     return expanded;
-  for (const Level& level : levels)
+  for (const QualityLevel& level : qualityLevels)
     if (name == level.name) {
-      expanded.add("samples", level.samples);
-      if (level.noise)
-        expanded.add("noise", level.noise);
+      expanded.add("samples", concat(level.samples));
+      if (level.noise > 0.0)
+        expanded.add("noise", toString(level.noise));
     }
   return expanded;
 }

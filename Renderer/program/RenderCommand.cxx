@@ -329,9 +329,9 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   std::future<void> surface = startSurfaceWriter(options, scene, outputs);
   Stopwatch watch;
   RenderStats stats;
-  ImageDenoiser filter(options, scene);
-  const RenderResult result =
-      renderFilm(options, scene, filter.settings(), checkpoint, monitor, startWorkers, stats);
+  ImageDenoiser filter(scene);
+  const RenderResult result = renderFilm(options, scene, makeSettings(options, scene, filter),
+                                         checkpoint, monitor, startWorkers, stats);
   stats.transport = watch.seconds();
   surface.get();
   if (options.isShard)

@@ -1,7 +1,6 @@
 #include "program/RenderSteps.h"
 
 #include "base/Error.h"
-#include "base/PhysicalMemory.h"
 #include "clip/mesh/SurfaceWriter.h"
 #include "files/images/ImageFormat.h"
 #include "files/images/ImageWriter.h"
@@ -19,17 +18,6 @@
 namespace fenestra::core {
 namespace {
 
-/// Options that reproduce the camera.
-std::string formatCamera(const CameraPose& pose) {
-  constexpr int exact = 17; // significant digits
-  const bool perspective = pose.projection == Projection::perspective;
-  return concat("--projection ", perspective ? "perspective --angle " : "orthographic --scale ",
-                toString(perspective ? pose.angle : pose.scale, exact),
-                " --position=", joinNumbers(pose.position, ",", exact),
-                " --target=", joinNumbers(pose.target, ",", exact),
-                " --up=", joinNumbers(pose.up, ",", exact));
-}
-
 std::map<std::string, std::string> makeHeader(const PreparedScene& scene,
                                               const RenderOptions& options,
                                               const RenderResult& result,
@@ -37,28 +25,14 @@ std::map<std::string, std::string> makeHeader(const PreparedScene& scene,
   const std::filesystem::path folder = options.outputs.front().parent_path();
   const std::vector<std::string> arguments =
       toRelativeArguments(words, renderSyntax.options, folder);
-  std::map<std::string, std::string> entries = {
-      {"version", versionText},
-      {"target", concat(processorText, "-", result.target)},
-      {"seed", concat(options.settings.seed)},
-      {"sampling", toString(options.settings.sampling)},
-      {"samples", concat(result.finishedSamples)},
-      {"camera", formatCamera(scene.camera().pose())},
-      {"look", toRelativeName(scene.transferName(), folder)},
-      {"command", concat("fenestra ", join(arguments, " ", quoteForShell))}};
-  if (const auto smoothing = scene.smoothing(); smoothing && smoothing->isApplied())
-    entries["volume"] = describe(*smoothing);
+  std::map<std::string, std::string> entries = makeImageHeader(scene, options.settings, result);
+  entries["version"] = versionText;
+  entries["target"] = concat(processorText, "-", result.target);
+  entries["look"] = toRelativeName(scene.transferName(), folder);
+  entries["command"] = concat("fenestra ", join(arguments, " ", quoteForShell));
   if (options.preset)
     entries["preset"] = toRelativeName(*options.preset, folder);
   return entries;
-}
-
-/// Header text on how an image was denoised.
-std::string describeDenoising(const std::optional<FilteredImage>& filtered) {
-  const std::optional<double> noise = denoisedNoise(filtered);
-  return concat("denoised by local linear regression, version ", filterVersion,
-                ", on expected albedo, normal, depth and light; estimated error ",
-                noise ? toString(*noise, 3) : "unknown", "; --denoise off leaves the image raw");
 }
 
 /// Adds the denoiser's channels that the layers include; R, G, B and A stay unchanged.
@@ -102,46 +76,12 @@ void printFacts(const PreparedScene& scene) {
     printLine(fact);
 }
 
-/// Compares with physical memory, since Linux grants more and kills the process when it is used.
-void checkMemory(const RenderRequest& scene) {
-  constexpr double filter = 400.0; // buffers of the denoiser
-  const double bytesPerPixel =     // film, and its channels as written
-      2.0 * sizeof(PixelSums) + (scene.features ? filter : 0.0);
-  constexpr double gigabyte = 1e9;
-  const double needed = bytesPerPixel * scene.width * scene.height;
-  const double available = physicalMemory();
-  if (needed <= available)
-    return;
-  throw outputError(ErrorCode::outOfMemory, "--size", "an image of ", scene.width, "x",
-                    scene.height, " pixels needs ", toString(needed / gigabyte, 3),
-                    " GB of memory, but this machine has ", toString(available / gigabyte, 3),
-                    "; use a smaller size");
-}
-
-RenderSettings ImageDenoiser::settings() {
-  RenderSettings settings = makeSettings(m_options, m_scene.background());
-  if (m_options.noiseTarget == NoiseTarget::denoised)
-    settings.displayNoise = [this](const Film& film) {
-      m_checked = denoise(film, m_scene.view(), *m_scene.features());
-      m_checkedSamples = film.sampleCounts().max;
-      // Two standard errors more, so that the render does not stop by chance.
-      return std::sqrt(m_checked.estimatedError + 2.0 * m_checked.errorUncertainty);
-    };
+RenderSettings makeSettings(const RenderOptions& options, const PreparedScene& scene,
+                            ImageDenoiser& denoiser) {
+  RenderSettings settings = makeSettings(options, scene.background());
+  if (options.noiseTarget == NoiseTarget::denoised)
+    denoiser.limitDisplayNoise(settings);
   return settings;
-}
-
-std::optional<FilteredImage> ImageDenoiser::apply(const RenderResult& result) const {
-  if (!m_scene.features())
-    return std::nullopt;
-  if (result.reason == StopReason::noise && m_checkedSamples == result.finishedSamples)
-    return m_checked;
-  return denoise(result.film, m_scene.view(), *m_scene.features());
-}
-
-std::optional<double> denoisedNoise(const std::optional<FilteredImage>& filtered) {
-  if (!filtered || filtered->error[0].empty())
-    return std::nullopt;
-  return std::sqrt(filtered->estimatedError);
 }
 
 void writeImages(const RenderOptions& options, const PreparedScene& scene,

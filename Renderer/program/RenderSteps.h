@@ -2,9 +2,8 @@
 // Steps shared by render, serve, turntable and merge. Files are checked before the long render, and
 // written after it.
 
-#include "denoise/features/Denoising.h"
 #include "program/MergedOptions.h"
-#include "scene/PreparedScene.h"
+#include "scene/FinishedImage.h"
 
 namespace fenestra::core {
 
@@ -24,29 +23,9 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs);
 /// Prints what was chosen for the scene (PreparedScene::choices), one fact per line.
 void printFacts(const PreparedScene& scene);
 
-/// Throws Error (output) if the image does not fit into memory.
-void checkMemory(const RenderRequest& scene);
-
-/// Denoiser of one render. Both arguments must outlive it.
-class ImageDenoiser {
-public:
-  ImageDenoiser(const RenderOptions& options, const PreparedScene& scene)
-      : m_options(options), m_scene(scene) {}
-
-  /// Render settings. With a target for denoised noise, their callback stores its last result here.
-  RenderSettings settings();
-  /// Denoised image; nullopt: the scene has no feature buffers.
-  std::optional<FilteredImage> apply(const RenderResult& result) const;
-
-private:
-  const RenderOptions& m_options;
-  const PreparedScene& m_scene;
-  FilteredImage m_checked;            ///< by the last noise check
-  std::uint64_t m_checkedSamples = 0; ///< samples per pixel of that check; 0: none yet
-};
-
-/// Estimated noise after denoising, on the scale of Film::noise(); nullopt: no estimate.
-std::optional<double> denoisedNoise(const std::optional<FilteredImage>& filtered);
+/// makeSettings(), with the noise that `denoiser` estimates as the limit if that is the target.
+RenderSettings makeSettings(const RenderOptions& options, const PreparedScene& scene,
+                            ImageDenoiser& denoiser);
 
 /// Writes all of options.outputs; the caller commits them. Headers store what reproduces the image,
 /// including the command `fenestra arguments…`, and how it was denoised. Throws Error (output).

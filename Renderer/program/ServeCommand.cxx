@@ -82,13 +82,14 @@ private:
     m_monitor.paths = 0;
     m_published.reset();
     m_failure.clear();
-    ImageDenoiser filter(m_options, *m_scene);
+    ImageDenoiser filter(*m_scene);
     m_monitor.onPassEnd = [this, &filter](const RenderResult& result) {
       const double interval = std::max(0.1, 4.0 * m_publishSeconds);
       if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
         publish(result, filter, false);
     };
-    const RenderResult result = render(m_scene->view(), filter.settings(), m_monitor);
+    const RenderResult result =
+        render(m_scene->view(), makeSettings(m_options, *m_scene, filter), m_monitor);
     m_isComplete = result.reason != StopReason::request;
     if (m_isComplete)
       publish(result, filter, true);

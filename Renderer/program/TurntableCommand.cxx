@@ -103,8 +103,9 @@ private:
       warn(composeMessage(warning));
     RenderOptions options = m_options.render;
     options.outputs = m_options.images(frame);
-    ImageDenoiser filter(options, m_view.scene);
-    const RenderResult result = render(m_view.scene.view(), filter.settings(), m_monitor);
+    ImageDenoiser filter(m_view.scene);
+    const RenderResult result =
+        render(m_view.scene.view(), makeSettings(options, m_view.scene, filter), m_monitor);
     if (result.reason == StopReason::request)
       return false;
     writeImages(options, m_view.scene, result, filter.apply(result), m_arguments, m_outputs);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <tuple>
+#include <type_traits>
 
 namespace fenestra::core {
 
@@ -14,12 +15,24 @@ namespace fenestra::core {
 template <typename Result>
 using Handle = std::shared_ptr<const Result>;
 
+/// Type of what a stage's function returns, a value or a handle.
+template <typename Returned>
+struct StageResult {
+  using Type = Returned;
+};
+template <typename Result>
+struct StageResult<Handle<Result>> {
+  using Type = Result;
+};
+
 template <auto function, typename Type = decltype(function)>
 class CachedStage;
 
-template <auto function, typename Result, typename... Arguments>
-class CachedStage<function, Result (*)(Arguments...)> {
+template <auto function, typename Returned, typename... Arguments>
+class CachedStage<function, Returned (*)(Arguments...)> {
 public:
+  using Result = typename StageResult<Returned>::Type;
+
   /// Marks the stage as unused. The result stays cached for later calls with equal arguments.
   void markUnused() {
     m_result = nullptr;
@@ -34,7 +47,11 @@ public:
       m_cached.reset(new Entry{{arguments...}, std::invoke(function, arguments...)});
       m_seconds = watch.seconds();
     }
-    return m_result = {m_cached, &m_cached->result};
+    if constexpr (std::is_same_v<Result, Returned>)
+      m_result = {m_cached, &m_cached->result};
+    else
+      m_result = m_cached->result;
+    return m_result;
   }
 
   /// Null if get() was not called since markUnused().
@@ -48,7 +65,7 @@ public:
 private:
   struct Entry {
     std::tuple<std::remove_cvref_t<Arguments>...> key;
-    Result result;
+    Returned result;
   };
 
   std::shared_ptr<const Entry> m_cached;

@@ -131,7 +131,11 @@ struct Input::SharedState {
     return work(*scene);
   }
 
-  std::filesystem::path path;
+  bool isInMemory() const { return volume != nullptr; }
+
+  std::filesystem::path path = {};
+  VolumeHandle volume = {}; ///< this and the next: only in memory
+  SegmentsHandle segments = {};
   bool isScene = false;
   std::mutex mutex = {};
   std::optional<MrmlScene> scene = {};
@@ -141,6 +145,12 @@ struct Input::SharedState {
 Input::Input(std::filesystem::path path) : m_state(std::make_shared<SharedState>()) {
   m_state->isScene = isSceneFile(path);
   m_state->path = std::move(path);
+}
+
+Input::Input(VolumeHandle volume, SegmentsHandle segments)
+    : m_state(std::make_shared<SharedState>()) {
+  m_state->volume = std::move(volume);
+  m_state->segments = std::move(segments);
 }
 
 const std::filesystem::path& Input::path() const {
@@ -168,7 +178,7 @@ MrmlScene* Input::scene() const {
 VolumeChoice Input::chooseForm(const VolumeChoice& given,
                                const std::optional<std::string>& segmentation) const {
   VolumeChoice choice = given;
-  if (m_state->isScene || isDicomInput(path()) || !segmentation)
+  if (m_state->isInMemory() || m_state->isScene || isDicomInput(path()) || !segmentation)
     return choice;
   const auto readGrids = [&] {
     if (!isFolder(*segmentation))
@@ -181,7 +191,7 @@ VolumeChoice Input::chooseForm(const VolumeChoice& given,
 }
 
 const DicomFolder* Input::dicom() const {
-  if (m_state->isScene || !isDicomInput(path()))
+  if (m_state->isInMemory() || m_state->isScene || !isDicomInput(path()))
     return nullptr;
   const std::lock_guard lock(m_state->mutex);
   if (!m_state->dicom)
@@ -221,7 +231,12 @@ Input::findUnusedSegmentations(const std::optional<std::string>& volume) const {
                       found, ", ", [](const auto& file) { return file.string(); }, mostListed))};
 }
 
-VolumeInput Input::volume(const VolumeChoice& choice) const {
+VolumeHandle Input::volume(const VolumeChoice& choice) const {
+  return m_state->isInMemory() ? m_state->volume
+                               : std::make_shared<const VolumeInput>(readVolumeInput(choice));
+}
+
+VolumeInput Input::readVolumeInput(const VolumeChoice& choice) const {
   if (const DicomFolder* const folder = dicom()) {
     const DicomSeries series = chooseSeries(folder->series, choice.name, path().string());
     return {readDicomVolume(series, choice), toInputFiles(series.files())};
@@ -293,10 +308,17 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& given) const 
   });
 }
 
-SegmentsInput Input::segments(const InputChoice& given, const std::optional<Grid>& volume) const {
+SegmentsHandle Input::segments(const InputChoice& choice, const std::optional<Grid>& volume) const {
+  if (m_state->isInMemory() && !m_state->segments)
+    throw requestError(ErrorCode::segmentationRequired, "volume", "has no segmentation");
+  return m_state->isInMemory() ? m_state->segments
+                               : std::make_shared<const SegmentsInput>(
+                                     readSegments(choice, volume ? &*volume : nullptr));
+}
+
+SegmentsInput Input::readSegments(const InputChoice& given, const Grid* grid) const {
   InputChoice choice = given;
   choice.segmentation = segmentationFile(given);
-  const Grid* const grid = volume ? &*volume : nullptr;
   const auto readFile = [&] {
     if (!choice.segmentation)
       throw inputError(ErrorCode::segmentationRequired, path(),

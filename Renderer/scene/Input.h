@@ -1,6 +1,6 @@
 #pragma once
 // Input of a request: a volume file, a DICOM folder, a stack of images, or a Slicer scene with its
-// settings.
+// settings; or a volume and a segmentation in memory.
 
 #include "base/Error.h"
 #include "files/segments/SegmentationReader.h"
@@ -73,12 +73,18 @@ struct InputChoice {
   bool operator==(const InputChoice&) const = default;
 };
 
+using VolumeHandle = std::shared_ptr<const VolumeInput>;
+using SegmentsHandle = std::shared_ptr<const SegmentsInput>;
+
 /// The input is opened once, on first use. Copies share the opened scene, its unpacked files and
 /// its transforms. Files are assumed not to change. All methods throw Error and are thread-safe.
 class Input {
 public:
   explicit Input(std::filesystem::path path);
+  /// In memory; `segments`: null: none. Choices among several are ignored.
+  Input(VolumeHandle volume, SegmentsHandle segments);
 
+  /// Empty in memory.
   const std::filesystem::path& path() const;
   /// True if the input is a scene or DICOM folder with several segmentations.
   bool hasSeveralSegmentations() const;
@@ -96,7 +102,7 @@ public:
   /// Warning about segmentations of a DICOM series, for a render that uses none.
   std::vector<Message> findUnusedSegmentations(const std::optional<std::string>& volume) const;
 
-  VolumeInput volume(const VolumeChoice& choice) const;
+  VolumeHandle volume(const VolumeChoice& choice) const;
   /// Adds the form of a NIfTI volume that agrees with the segmentation file (NiftiForms.h).
   VolumeChoice chooseForm(const VolumeChoice& given,
                           const std::optional<std::string>& segmentation) const;
@@ -110,16 +116,21 @@ public:
   /// visible ones, else of all.
   std::optional<SegmentNames> segmentNames(const InputChoice& choice) const;
   /// Segmentation for a volume on the given grid; without a grid, closed surfaces get their own.
-  SegmentsInput segments(const InputChoice& choice, const std::optional<Grid>& volume = {}) const;
+  SegmentsHandle segments(const InputChoice& choice, const std::optional<Grid>& volume = {}) const;
   /// Volume property with this name or id.
   SceneTransfer property(const std::string& name) const;
   std::vector<std::string> propertyNames() const;
 
-  /// Compares paths only.
-  bool operator==(const Input& other) const { return path() == other.path(); }
+  /// Compares files by their paths only.
+  bool operator==(const Input& other) const {
+    return m_state == other.m_state || (!path().empty() && path() == other.path());
+  }
 
 private:
   struct SharedState;
+
+  VolumeInput readVolumeInput(const VolumeChoice& choice) const;
+  SegmentsInput readSegments(const InputChoice& choice, const Grid* grid) const;
 
   std::shared_ptr<SharedState> m_state;
 };

@@ -70,7 +70,7 @@ FileVolume inspectVolume(const RenderRequest& request, const Input& input, Json&
     if (const auto read = tryRead(
             [&] { return input.volume(input.chooseForm(request.volume, request.segmentation)); },
             unused))
-      add(read->volume, read->volume.warnings);
+      add((*read)->volume, (*read)->volume.warnings);
   }
   return result;
 }

@@ -204,7 +204,7 @@ void PreparedScene::makeTint(const std::string& name) {
                                isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result(),
                                m_transparent.result());
   const auto segments =
-      hasSolidFocus() ? *m_separated.get(currentSegments(), m_transparent.result(), rawVolume())
+      hasSolidFocus() ? m_separated.get(currentSegments(), m_transparent.result(), rawVolume())
                       : currentSegments();
   const auto weights = m_labelWeights.get(segments, plan->parts, m_skin.result(),
                                           r.focusStyle.shaping.smoothing, volume().grid);

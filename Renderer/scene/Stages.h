@@ -24,7 +24,6 @@ struct FocusInput {
 
 using SettingsHandle = Handle<SceneSettings>;
 using FocusHandle = Handle<FocusInput>;
-using VolumeHandle = Handle<VolumeInput>;
 using TintInterfaces = std::vector<ComponentInterface>;
 
 /// Lights by name or inline JSON (findLights). An environment color or map replaces their own

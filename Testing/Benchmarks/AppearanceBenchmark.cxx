@@ -137,7 +137,7 @@ std::optional<double> percent(const std::optional<double>& fraction) {
 void measureTissues(const Table& table, const PreparedScene& scene, const Input& input,
                     const RenderRequest& request, const Raster<Lab>& image,
                     const VisibleSurface& surface, const PixelMask& focus) {
-  std::optional<SegmentsInput> segments;
+  SegmentsHandle segments;
   if (scene.focus())
     segments = input.segments({request.volume.name, request.segmentation, request.labels},
                               scene.volume().grid);

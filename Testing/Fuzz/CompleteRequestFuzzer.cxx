@@ -54,7 +54,7 @@ void checkPixels(const Film& film) {
 
 void renderRequest(const RenderRequest& request) {
   const Input input(request.input);
-  if (input.volume(request.volume).volume.grid.voxelCount() > maxVoxels)
+  if (input.volume(request.volume)->volume.grid.voxelCount() > maxVoxels)
     return;
   const PreparedScene scene(request, input);
   RenderSettings settings;

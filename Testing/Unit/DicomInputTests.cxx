@@ -40,7 +40,7 @@ TEST_F(DicomInput, FocusChoosesAmongSeveralSegmentations) {
   const Input input(folder.path());
   EXPECT_TRUE(input.hasSeveralSegmentations());
   EXPECT_EQ(input.segmentationFile({.focus = {"Liver mass"}}), (folder / "b").string());
-  EXPECT_EQ(input.segments({.focus = {"Liver"}}).segmentation.source(), (folder / "a").string());
+  EXPECT_EQ(input.segments({.focus = {"Liver"}})->segmentation.source(), (folder / "a").string());
   expectRefused(folder.path(), "ambiguous-segmentation",
                 [&] { input.segmentationFile({.focus = {"1"}}); });
   expectRefused(folder.path(), "ambiguous-segmentation", [&] { input.segmentationFile({}); });
@@ -51,7 +51,7 @@ TEST_F(DicomInput, SegmentationOfAnotherFrameOfReferenceWarns) {
   writeSeg(other / "s", "Liver", "1.6");
   const Input input(folder.path());
   const auto read = [&](const std::filesystem::path& path) {
-    return input.segments({.segmentation = path.string()}).segmentation.warnings();
+    return input.segments({.segmentation = path.string()})->segmentation.warnings();
   };
   EXPECT_EQ(read(folder / "a"), std::vector<Message>());
   ASSERT_EQ(read(other / "s").size(), 1U);

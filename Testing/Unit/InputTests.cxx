@@ -94,7 +94,7 @@ protected:
   }
 
   Segmentation read(const std::vector<std::string>& focus) const {
-    return input.segments({.focus = focus}).segmentation;
+    return input.segments({.focus = focus})->segmentation;
   }
   std::int64_t count(const std::vector<std::string>& focus) const {
     const Segmentation segmentation = read(focus);
@@ -112,7 +112,7 @@ TEST_F(SeveralSegmentations, FocusFindsTheNodeOfItsSegments) {
   EXPECT_EQ(count({"Spleen", "Liver"}), 8) << "hidden, but no visible one has it";
   EXPECT_EQ(count({"Duodenum", "Tumour"}), 5) << "named by the color table";
   EXPECT_EQ(read({"Liver", "Tumour"}).segments().size(), 2U);
-  EXPECT_EQ(input.segments({.focus = {"Tumour"}}).files,
+  EXPECT_EQ(input.segments({.focus = {"Tumour"}})->files,
             (InputFiles{(folder / "s.mrml").string(), (folder / "a.seg.nrrd").string(),
                         (folder / "b.seg.nrrd").string()}));
 }
@@ -132,16 +132,16 @@ TEST_F(SeveralSegmentations, OffersTheNamesOfAllVisibleOnes) {
 TEST_F(SeveralSegmentations, AmbiguousAndUnknownSegmentsAreRefused) {
   expectRefused(folder / "s.mrml", "ambiguous-segmentation | S1 | a | b", [&] { read({"S1"}); });
   expectRefused(folder / "s.mrml", "ambiguous-segmentation | Heart", [&] { read({"Heart"}); });
-  EXPECT_EQ(input.segments({.segmentation = "b", .focus = {"S1"}}).segmentation.segments().size(),
+  EXPECT_EQ(input.segments({.segmentation = "b", .focus = {"S1"}})->segmentation.segments().size(),
             1U);
 }
 
 TEST_F(ArchiveInput, ListsTheFilesOfEachRead) {
   const std::string inArchive = archive.string() + "/a/";
   const Input input(archive);
-  const VolumeInput read = input.volume({});
+  const VolumeInput read = *input.volume({});
   EXPECT_EQ(read.files, (InputFiles{archive.string(), inArchive + "ct.nrrd"}));
-  EXPECT_EQ(input.segments({{}, "L"}, read.volume.grid).files,
+  EXPECT_EQ(input.segments({{}, "L"}, read.volume.grid)->files,
             (InputFiles{archive.string(), inArchive + "labels.nrrd"}));
   EXPECT_EQ(input.settings({}, true).files, InputFiles{archive.string()});
 }
@@ -153,7 +153,7 @@ TEST(Input, FromAVolumeFileHasNoSceneOrSettings) {
   EXPECT_FALSE(input.property("P").transfer);
   EXPECT_FALSE(input.segmentNames({}));
   EXPECT_FALSE(input.settings({}, true).camera);
-  EXPECT_EQ(input.volume({}).files, InputFiles{(folder / "ct.nrrd").string()});
+  EXPECT_EQ(input.volume({})->files, InputFiles{(folder / "ct.nrrd").string()});
 }
 
 TEST(InlineJson, BraceDistinguishesJsonFromNames) {

@@ -135,8 +135,8 @@ std::string makeComment(const Image& image, const Display& display) {
   return comment;
 }
 
-std::string encodePng(const Image& image, const std::vector<float>& rgba,
-                      const std::string& comment) {
+std::string encodePngPixels(const Image& image, const std::vector<float>& rgba,
+                            const std::string& comment) {
   const std::vector<std::uint8_t> values = quantize<std::uint8_t>(rgba);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
@@ -263,6 +263,18 @@ void requireColor(const Image& image, const std::filesystem::path& path) {
 
 } // namespace
 
+std::vector<float> makeDisplayPixels(const Image& image, const ImagePlane& plane,
+                                     const Display& display) {
+  std::vector<float> pixels = toDisplay(interleaveRgba(image), display);
+  drawAnnotations(display.annotations, plane, image.width, image.height, pixels);
+  return pixels;
+}
+
+std::string encodePng(const Image& image, const ImagePlane& plane, const Display& display) {
+  return encodePngPixels(image, makeDisplayPixels(image, plane, display),
+                         makeComment(image, display));
+}
+
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
                 Outputs& outputs, const Display& display) {
   const ImageFormat format = requireFormat(path);
@@ -278,11 +290,10 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
                     encodeSlice(image, plane, interleaveRgba(image, "denoised.")));
     return;
   }
-  std::vector<float> pixels = toDisplay(interleaveRgba(image), display);
-  drawAnnotations(display.annotations, plane, image.width, image.height, pixels);
-  const std::string comment = makeComment(image, display);
-  outputs.write(path, format == ImageFormat::png ? encodePng(image, pixels, comment)
-                                                 : encodeTiff(image, pixels, comment));
+  if (format == ImageFormat::png)
+    return outputs.write(path, encodePng(image, plane, display));
+  outputs.write(path, encodeTiff(image, makeDisplayPixels(image, plane, display),
+                                 makeComment(image, display)));
 }
 
 std::vector<std::filesystem::path> listImageFiles(const std::filesystem::path& path) {

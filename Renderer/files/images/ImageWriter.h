@@ -26,6 +26,13 @@ namespace fenestra::core {
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
                 Outputs& outputs, const Display& display = {});
 
+/// Interleaved RGBA through the display transform, in [0, 1] with straight alpha, with marks.
+/// Requires R, G, B.
+std::vector<float> makeDisplayPixels(const Image& image, const ImagePlane& plane,
+                                     const Display& display);
+/// The same as the bytes of a `.png` file.
+std::string encodePng(const Image& image, const ImagePlane& plane, const Display& display);
+
 /// Lists the files that writeImage may write for this path: the path itself and, for `.nrrd`, the
 /// depth and denoised files beside it. Throws Error (request) for another extension.
 std::vector<std::filesystem::path> listImageFiles(const std::filesystem::path& path);

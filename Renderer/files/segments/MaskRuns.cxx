@@ -69,12 +69,16 @@ bool isProbability(const SampleStats& samples) {
          samples.maximum <= 1.0 + rounding;
 }
 
+std::optional<std::vector<MaskRun>> readMaskRuns(const SampleSource& source, std::int64_t width) {
+  RunStore store(width);
+  readSamples(source, store);
+  return store.take();
+}
+
 MaskRuns readMask(const std::filesystem::path& path, const VolumeChoice& choice) {
   MaskRuns mask;
   const auto consume = [&](const MedicalImage& image, const SampleSource& source) {
-    RunStore store(image.grid.size.x());
-    readSamples(source, store);
-    auto runs = store.take();
+    auto runs = readMaskRuns(source, image.grid.size.x());
     if (!runs)
       throw inputError(ErrorCode::unsupportedFile, path,
                        "is no mask of one structure: it has several values; give a label map "

@@ -3,12 +3,13 @@
 // empty, and a folder of them may have more than a hundred on the grid of the scan.
 
 #include "base/Error.h"
-#include "files/medical/SampleStore.h"
+#include "files/medical/SampleSource.h"
 #include "files/medical/VolumeChoice.h"
 #include "files/segments/NativeGrid.h"
 #include "model/volume/Grid.h"
 
 #include <filesystem>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,10 @@ struct MaskRuns {
 
 /// True if the samples are no integers and are from 0 to 1, up to rounding.
 bool isProbability(const SampleStats& samples);
+
+/// Runs of the samples of a mask with rows of `width` voxels: all other than 0 have one value, or
+/// they are probabilities, of which those of at least 1/2 are taken. nullopt: it is no mask.
+std::optional<std::vector<MaskRun>> readMaskRuns(const SampleSource& source, std::int64_t width);
 
 /// Reads a mask: an image in which all voxels other than 0 have one value, or a probability map
 /// with values from 0 to 1, of which the voxels of at least 1/2 are taken. `choice`: of the NIfTI

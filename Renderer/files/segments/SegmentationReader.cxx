@@ -257,6 +257,15 @@ Segmentation::Labels interleaveLayers(Segmentation::Labels layers, std::size_t c
       layers);
 }
 
+Segmentation makeLabelMap(const std::string& source, const Grid& grid, const SampleSource& samples,
+                          const LabelNames& names) {
+  LabelStore store(samples.count);
+  readSamples(samples, store);
+  Segmentation::Labels labels = toLabels(std::move(store), source);
+  std::vector<SegmentInfo> segments = makeSegments(collectValues(labels, source), names);
+  return {source, grid, 1, std::move(labels), std::move(segments)};
+}
+
 std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
                                           const std::optional<std::string>& labels) {
   if (isFolder(path))

@@ -3,6 +3,8 @@
 
 #include "base/Error.h"
 #include "base/Vector.h"
+#include "files/medical/SampleSource.h"
+#include "files/segments/LabelNames.h"
 #include "files/segments/NativeGrid.h"
 #include "model/masks/MaskShaping.h"
 #include "model/volume/Mask.h"
@@ -131,6 +133,11 @@ private:
 
 /// Interleaves `count` layers, stored one after the other, into a Segmentation's order.
 Segmentation::Labels interleaveLayers(Segmentation::Labels layers, std::size_t count);
+
+/// Label map of samples: one segment "Segment_<value>" per value other than 0, named by `names`.
+/// Throws Error (input) for samples that are not integers, and for more than 65536 values.
+Segmentation makeLabelMap(const std::string& source, const Grid& grid, const SampleSource& samples,
+                          const LabelNames& names = {});
 
 /// Reads a segmentation:
 /// - Slicer's `.seg.nrrd`. The file's geometry includes Segmentation_ReferenceImageExtentOffset,

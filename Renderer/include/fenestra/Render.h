@@ -20,7 +20,8 @@ struct Background {
 /// A render stops at the first of the limits.
 struct RenderOptions {
   int width = 512, height = 512;
-  std::uint64_t samples = 64;         ///< limit of the mean number per pixel
+  /// Limit of the mean number per pixel; by default 64, without another limit none.
+  std::optional<std::uint64_t> samples = {};
   std::optional<double> seconds = {}; ///< limit of the time
   std::optional<double> noise = {};   ///< limit of the noise, of the denoised image if there is one
   bool isDenoised = true;             ///< adds Image::denoised()

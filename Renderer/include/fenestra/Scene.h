@@ -44,8 +44,8 @@ struct Clip {
   int controlPoints = 50;                      ///< of the spline, 3 to 1000
   double splineSmoothing = 0.5;                ///< of the spline: 0 (a plane) to 1 (exact)
   std::optional<Plane> plane = {};             ///< fitted to the focus
-  HoleShape hole = HoleShape::box;
-  double holeMargin = 0.0;
+  HoleShape hole = HoleShape::cylinder;
+  double holeMargin = 5.0;             ///< from the focus to the wall of the hole
   double ghost = 0.1;                  ///< remaining fraction of the opacity, 0 to 1
   double offset = 0.0;                 ///< moves the cut away from the camera
   std::optional<double> softness = {}; ///< depth over which the volume fades in; 0.6 or 0

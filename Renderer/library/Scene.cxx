@@ -1,0 +1,141 @@
+#include "fenestra/Scene.h"
+
+#include "clip/mesh/SurfaceMesh.h"
+#include "library/Convert.h"
+#include "library/Data.h"
+#include "scene/FinishedImage.h"
+
+#include <tbb/task_arena.h>
+
+namespace fenestra {
+inline namespace v1 {
+
+core::PreparedScene Scene::Data::prepare(int width, int height, bool hasFeatures) {
+  constexpr int most = 65536;
+  if (width < 1 || height < 1 || width > most || height > most)
+    throw core::requestError(core::ErrorCode::invalidValue, "size",
+                             "must be from 1 x 1 to 65536 x 65536 pixels");
+  core::RenderRequest wanted = request;
+  wanted.width = width;
+  wanted.height = height;
+  wanted.features = hasFeatures;
+  core::checkMemory(wanted);
+  const std::lock_guard lock(mutex);
+  const auto reading = allowReading(isReadInProcess);
+  // Isolated: while it waits, this thread must not take a task that waits for the lock.
+  tbb::this_task_arena::isolate([&] {
+    prepared = prepared ? prepared->withRequest(wanted) : core::PreparedScene(wanted, input);
+  });
+  return *prepared;
+}
+
+namespace {
+
+std::shared_ptr<Scene::Data> share(core::Input input, const SceneOptions& options) {
+  core::RenderRequest request = makeRequest(options);
+  request.input = input.path();
+  return std::shared_ptr<Scene::Data>(
+      new Scene::Data{std::move(input), std::move(request), options});
+}
+
+/// Throws core::Error if a segment of the focus does not exist.
+void requireSegments(const core::SegmentsHandle& segments, const std::vector<std::string>& focus) {
+  if (!segments && !focus.empty())
+    throw core::requestError(core::ErrorCode::segmentationRequired, "focus",
+                             "requires a segmentation, which holds its segments");
+  for (const std::string& selector : focus)
+    segments->segmentation.find(selector);
+}
+
+core::PreparedScene prepare(const std::shared_ptr<Scene::Data>& data, int width, int height) {
+  return data->prepare(width, height, false);
+}
+
+} // namespace
+
+Scene::Scene(const Volume& volume, const SceneOptions& options)
+    : m_data(guard([&] {
+        requireSegments(nullptr, options.focus);
+        return share(core::Input(volume.data()->input, nullptr), options);
+      })) {}
+
+Scene::Scene(const Volume& volume, const Segmentation& segmentation, const SceneOptions& options)
+    : m_data(guard([&] {
+        requireSegments(segmentation.data()->input, options.focus);
+        return share(core::Input(volume.data()->input, segmentation.data()->input), options);
+      })) {}
+
+Scene::Scene(std::shared_ptr<Data> data) : m_data(std::move(data)) {}
+
+Scene Scene::withOptions(const SceneOptions& options) const {
+  return guard([&] {
+    const std::lock_guard lock(m_data->mutex);
+    if (m_data->input.path().empty() && !options.focus.empty())
+      requireSegments(m_data->input.segments({}), options.focus);
+    std::shared_ptr<Data> changed = share(m_data->input, options);
+    const core::RenderRequest& own = m_data->request;
+    changed->request.volume = own.volume;
+    changed->request.segmentation = own.segmentation;
+    changed->request.labels = own.labels;
+    changed->isReadInProcess = m_data->isReadInProcess;
+    changed->prepared = m_data->prepared;
+    return Scene(std::move(changed));
+  });
+}
+
+const SceneOptions& Scene::options() const {
+  return m_data->options;
+}
+
+std::vector<Warning> Scene::warnings(int width, int height) const {
+  return guard([&] { return toWarnings(prepare(m_data, width, height).warnings()); });
+}
+
+std::vector<std::string> Scene::choices(int width, int height) const {
+  return guard([&] { return prepare(m_data, width, height).choices(); });
+}
+
+Camera Scene::camera(int width, int height) const {
+  return guard([&] {
+    const core::CameraPose pose = prepare(m_data, width, height).camera().pose();
+    const bool isPerspective = pose.projection == core::Projection::perspective;
+    return Camera{isPerspective ? Projection::perspective : Projection::orthographic,
+                  toVector3(pose.position),
+                  toVector3(pose.target),
+                  toVector3(pose.up),
+                  pose.scale,
+                  pose.angle};
+  });
+}
+
+ClipSurface Scene::clipSurface(int width, int height) const {
+  return guard([&] {
+    const core::PreparedScene scene = prepare(m_data, width, height);
+    const auto* const clip = std::get_if<core::ClipDepth>(&scene.clip());
+    if (!clip)
+      throw core::requestError(core::ErrorCode::focusRequired, "clip",
+                               "is no surface; it needs a focus and a mode such as surface");
+    core::SurfaceMesh mesh =
+        core::buildSurfaceMesh(*clip, scene.domain(), core::surfaceTolerance(clip->camera));
+    ClipSurface surface{{}, std::move(mesh.depths), std::move(mesh.triangles)};
+    for (const core::Vec3& point : mesh.points)
+      surface.points.push_back(toVector3(point));
+    return surface;
+  });
+}
+
+Scene readScene(const std::string& path, const std::optional<std::string>& segmentation,
+                const std::optional<std::string>& labels, const SceneOptions& scene,
+                const ReadOptions& options) {
+  return guard([&] {
+    std::shared_ptr<Scene::Data> data = share(core::Input(path), scene);
+    data->request.volume = makeChoice(options);
+    data->request.segmentation = segmentation;
+    data->request.labels = labels;
+    data->isReadInProcess = options.isInProcess;
+    return Scene(std::move(data));
+  });
+}
+
+} // namespace v1
+} // namespace fenestra

@@ -1,0 +1,40 @@
+// Renders a ball inside a block from samples in memory, and saves it: example IMAGE.png
+#include <fenestra/Fenestra.h>
+
+#include <cstdio>
+#include <vector>
+
+int main(int argc, char** argv) {
+  constexpr int size = 64;
+  std::vector<std::int16_t> voxels; // Hounsfield units, i fastest
+  std::vector<std::uint8_t> labels;
+  for (int k = 0; k < size; ++k)
+    for (int j = 0; j < size; ++j)
+      for (int i = 0; i < size; ++i) {
+        const int x = i - size / 2, y = j - size / 2, z = k - size / 2;
+        const bool isBall = x * x + y * y + z * z < 15 * 15;
+        voxels.push_back(isBall ? 300 : 40);
+        labels.push_back(isBall ? 1 : 0);
+      }
+  const fenestra::Affine indexToWorld = {{{2, 0, 0, -64}, {0, 2, 0, -64}, {0, 0, 2, -64}}}; // mm
+  try {
+    using enum fenestra::SampleType;
+    const fenestra::Volume volume({voxels.data(), int16, {size, size, size}}, indexToWorld,
+                                  {.modality = fenestra::Modality::ct});
+    const fenestra::Segmentation segments({labels.data(), uint8, {size, size, size}}, indexToWorld,
+                                          {{1, "ball"}});
+    fenestra::SceneOptions options;
+    options.focus = {"ball"};
+    options.view.name = "anterior";
+    const fenestra::Scene scene(volume, segments, options);
+    const auto onProgress = [](const fenestra::Progress& progress) {
+      std::fprintf(stderr, "\r%3.0f %%", 100.0 * progress.fraction);
+      return true; // false stops the render
+    };
+    fenestra::render(scene, {.width = 256, .height = 256, .samples = 16}, onProgress)
+        .save(argc > 1 ? argv[1] : "ball.png");
+  } catch (const fenestra::Error& error) {
+    std::fprintf(stderr, "%s (%s)\n", error.what(), error.code().c_str());
+    return 1;
+  }
+}
