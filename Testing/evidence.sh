@@ -50,6 +50,7 @@ for my $file (@ARGV) {
   if ($file =~ /\.(h|cxx)$/) {
     s{^[ \t]*\#[ \t]*include[^\n]*|//[^\n]*|/\*.*?\*/|R"([^(\s]*)\(.*?\)\g{1}"|"(?:[^"\\\n]|\\.)*"|((?<=[0-9a-fA-F])'|'(?:[^'\\\n]|\\.)+')}
      {defined $2 ? $2 : $& =~ /"$/ && $& !~ m{^(//|/\*|\s*\#)} ? '""' : ''}gesm;
+    s/\bfenestra::core\b/fenestra/g; # its name since the library has a public namespace
     s/\s+//g;
   } else {
     s/^[ \t]*#[^\n]*\n//gm;

@@ -19,3 +19,19 @@ foreach(output IN ITEMS
   install(FILES "$<TARGET_FILE_DIR:fenestra>/described/${kind}" RENAME ${name} DESTINATION "${folder}"
     COMPONENT program ${exclude})
 endforeach()
+
+# The component `library`: libfenestra, its headers, what CMake and pkg-config need to find it, and the program that it
+# reads files with.
+include(CMakePackageConfigHelpers)
+set(package "${CMAKE_INSTALL_LIBDIR}/cmake/Fenestra")
+install(TARGETS fenestra_shared EXPORT FenestraTargets
+  LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT library NAMELINK_COMPONENT library ${exclude})
+install(DIRECTORY Renderer/include/fenestra DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT library ${exclude})
+install(EXPORT FenestraTargets NAMESPACE Fenestra:: DESTINATION "${package}" COMPONENT library ${exclude})
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/FenestraConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+file(RELATIVE_PATH relative_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
+configure_file(cmake/package/fenestra.pc.in fenestra.pc @ONLY)
+install(FILES cmake/package/FenestraConfig.cmake "${PROJECT_BINARY_DIR}/FenestraConfigVersion.cmake"
+  DESTINATION "${package}" COMPONENT library ${exclude})
+install(FILES "${PROJECT_BINARY_DIR}/fenestra.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
+  COMPONENT library ${exclude})

@@ -1,6 +1,8 @@
 // Renders a ball inside a block from samples in memory, and saves it: example IMAGE.png
 #include <fenestra/Fenestra.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <vector>
 
@@ -11,10 +13,10 @@ int main(int argc, char** argv) {
   for (int k = 0; k < size; ++k)
     for (int j = 0; j < size; ++j)
       for (int i = 0; i < size; ++i) {
-        const int x = i - size / 2, y = j - size / 2, z = k - size / 2;
-        const bool isBall = x * x + y * y + z * z < 15 * 15;
-        voxels.push_back(isBall ? 300 : 40);
-        labels.push_back(isBall ? 1 : 0);
+        const double distance = std::hypot(i - 31.5, j - 31.5, k - 31.5);
+        voxels.push_back(
+            static_cast<std::int16_t>(40.0 + 260.0 * std::clamp(15.5 - distance, 0.0, 1.0)));
+        labels.push_back(distance < 15.0 ? 1 : 0);
       }
   const fenestra::Affine indexToWorld = {{{2, 0, 0, -64}, {0, 2, 0, -64}, {0, 0, 2, -64}}}; // mm
   try {
@@ -31,7 +33,7 @@ int main(int argc, char** argv) {
       std::fprintf(stderr, "\r%3.0f %%", 100.0 * progress.fraction);
       return true; // false stops the render
     };
-    fenestra::render(scene, {.width = 256, .height = 256, .samples = 16}, onProgress)
+    fenestra::render(scene, {.width = 256, .height = 256, .samples = 4}, onProgress)
         .save(argc > 1 ? argv[1] : "ball.png");
   } catch (const fenestra::Error& error) {
     std::fprintf(stderr, "%s (%s)\n", error.what(), error.code().c_str());
