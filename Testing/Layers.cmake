@@ -24,6 +24,7 @@ endforeach()
 
 foreach(source IN LISTS sources)
   get_filename_component(folder ${source} DIRECTORY)
+  string(REGEX REPLACE "^include/" "" folder ${folder})
   if(NOT folder IN_LIST folders)
     list(APPEND errors "${source}: its folder has no row in README.md's table")
     continue()

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Tests the installed library: the example in Renderer/library/example is built against it alone, by CMake and by
+# Tests the installed library: the example in Resources/embedding is built against it alone, by CMake and by
 # pkg-config, and both programs give the same image. Exit status 77: CMake or pkg-config is missing.
 # usage: bash Testing/Package/library.sh BUILD
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../Resources/setup.sh"
 build=$(cd "$1" && pwd)
-example=$top/Renderer/library/example
+example=$top/Resources/embedding
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 command -v pkg-config >/dev/null || { printf 'SKIPPED: needs pkg-config\n' >&2; exit 77; }
