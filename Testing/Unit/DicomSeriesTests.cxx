@@ -116,6 +116,16 @@ Mat3 makeObliqueAxes() {
       .linear();
 }
 
+TEST(SuppressItkOutput, OutputReturnsWithTheLastObject) {
+  std::streambuf* const before = std::cerr.rdbuf();
+  auto first = std::make_unique<SuppressItkOutput>(),
+       second = std::make_unique<SuppressItkOutput>();
+  first.reset(); // as in two threads
+  EXPECT_EQ(std::cerr.rdbuf(), nullptr);
+  second.reset();
+  EXPECT_EQ(std::cerr.rdbuf(), before);
+}
+
 TEST(DicomSeries, SortsSlicesAlongTheirNormal) {
   const TemporaryFolder folder;
   SliceFile slice{.position = {10, -20, 30}, .axes = makeObliqueAxes()};

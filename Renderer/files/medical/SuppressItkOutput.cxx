@@ -3,15 +3,34 @@
 #include <itkObject.h>
 
 #include <iostream>
+#include <mutex>
+#include <streambuf>
 
 namespace fenestra::core {
+namespace {
 
-SuppressItkOutput::SuppressItkOutput() : m_previous(std::cerr.rdbuf(nullptr)) {
+std::mutex mutex;
+int count = 0; ///< number of objects
+std::streambuf* previous = nullptr;
+bool hadWarnings = false;
+
+} // namespace
+
+SuppressItkOutput::SuppressItkOutput() {
+  const std::lock_guard lock(mutex);
+  if (count++ > 0)
+    return;
+  previous = std::cerr.rdbuf(nullptr);
+  hadWarnings = itk::Object::GetGlobalWarningDisplay();
   itk::Object::SetGlobalWarningDisplay(false);
 }
 
 SuppressItkOutput::~SuppressItkOutput() {
-  std::cerr.rdbuf(m_previous);
+  const std::lock_guard lock(mutex);
+  if (--count > 0)
+    return;
+  itk::Object::SetGlobalWarningDisplay(hadWarnings);
+  std::cerr.rdbuf(previous);
   std::cerr.clear();
 }
 
