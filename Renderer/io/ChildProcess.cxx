@@ -54,7 +54,7 @@ namespace {
 ChildProcess::ChildProcess(std::vector<std::string> arguments, int failureStatus,
                            const Descriptor* inherited)
     : m_errors(::memfd_create("errors", MFD_CLOEXEC)) {
-  const SelfArguments selfArguments(std::move(arguments));
+  const ArgumentList selfArguments(makeSelfArguments(std::move(arguments)));
   const pid_t parent = ::getpid();
   ::signal(SIGCHLD, SIG_DFL); // if it were ignored, the child's status would be lost
   sigset_t all, before;

@@ -1,7 +1,9 @@
 #include "io/Sandbox.h"
 
 #include "base/Error.h"
+#include "io/ReaderProgram.h"
 #include "io/SelfExec.h"
+#include "io/SystemErrors.h"
 
 #include <algorithm>
 #include <array>
@@ -14,6 +16,7 @@
 #include <fcntl.h>
 #include <fstream>
 #include <linux/landlock.h>
+#include <mutex>
 #include <poll.h>
 #include <spawn.h>
 #include <stdexcept>
@@ -158,6 +161,8 @@ void limitCpuTime(unsigned seconds) {
 // ---- the child
 
 bool servesSandbox = false; ///< main has called serveSandbox
+bool isChild = false;       ///< this process is a child
+thread_local bool readsInProcess = false;
 
 /// All jobs of this program.
 std::vector<const SandboxJob*>& registeredJobs() {
@@ -166,11 +171,13 @@ std::vector<const SandboxJob*>& registeredJobs() {
 }
 
 [[noreturn]] void serveRequests(const SandboxJob& job) {
+  isChild = true;
+  const SandboxJob::Handler handler = job.handler;
   while (const auto request = receiveFrame(childConnection, maxRequestBytes, std::nullopt)) {
     limitCpuTime(job.limits.seconds);
     std::string reply;
     try {
-      reply = job.handler(*request);
+      reply = handler(*request);
     } catch (...) { // the parent reports the error
       reply.clear();
     }
@@ -182,10 +189,23 @@ std::vector<const SandboxJob*>& registeredJobs() {
 
 // ---- starting a child
 
-/// Starts the child for `job`, with its end of the connection as its only file, and default signal
-/// handlers. Returns the process id; 0: failure.
-pid_t spawn(const std::string& job, int connection) {
-  const SelfArguments arguments({subcommand, job, std::to_string(::getpid())});
+/// What a child executes.
+struct ChildProgram {
+  std::filesystem::path file;
+  ArgumentList arguments;
+
+  static ChildProgram choose(const std::string& job) {
+    std::vector<std::string> arguments = {subcommand, job, std::to_string(::getpid())};
+    if (servesSandbox)
+      return {selfExecutable, ArgumentList(makeSelfArguments(std::move(arguments)))};
+    arguments.insert(arguments.begin(), readerName);
+    return {findReaderProgram(), ArgumentList(std::move(arguments))};
+  }
+};
+
+/// Starts the child, with its end of the connection as its only file, and default signal handlers.
+/// Returns an error code, 0: success.
+int spawn(const ChildProgram& program, int connection, pid_t& child) {
   posix_spawn_file_actions_t files;
   ::posix_spawn_file_actions_init(&files);
   ::posix_spawn_file_actions_adddup2(&files, connection, childConnection);
@@ -202,12 +222,35 @@ pid_t spawn(const std::string& job, int connection) {
   ::posix_spawnattr_setsigdefault(&attributes, &signals);
   ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
                                               POSIX_SPAWN_SETPGROUP);
-  pid_t child = 0;
-  const int failed =
-      ::posix_spawn(&child, selfExecutable, &files, &attributes, arguments.get(), environ);
+  const int failed = ::posix_spawn(&child, program.file.c_str(), &files, &attributes,
+                                   program.arguments.get(), environ);
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&files);
-  return failed ? 0 : child;
+  return failed;
+}
+
+/// Throws Error (output) for an error code of spawn or of the system calls before it.
+void checkStart(int failed, const std::filesystem::path& program) {
+  if (failed == EACCES || failed == ENOEXEC)
+    throw outputError(ErrorCode::unreadableFile, program,
+                      "cannot be executed: ", systemMessage(failed), "; install it again");
+  if (failed != 0)
+    throw outputError(ErrorCode::outOfMemory, "memory",
+                      "cannot start a process to read files; close other programs");
+}
+
+/// Receives the child's build. Throws Error (output) unless it is this one.
+void checkBuild(int connection, const std::filesystem::path& program) {
+  constexpr std::chrono::seconds maxTime(60); // to load its libraries from a slow disk
+  constexpr std::uint64_t maxBytes = 256;
+  const auto build = receiveFrame(connection, maxBytes, Clock::now() + maxTime);
+  if (!build)
+    throw outputError(ErrorCode::outOfMemory, program,
+                      "ended before it could read a file; close other programs, or install it "
+                      "again");
+  if (*build != readerBuild)
+    throw outputError(ErrorCode::invalidFile, program,
+                      "is of another build than this library; install both together");
 }
 
 } // namespace
@@ -218,22 +261,33 @@ SandboxJob::SandboxJob(std::string nameIn, Handler handlerIn, SandboxLimits limi
 }
 
 void SandboxedReader::start() {
-  if (!servesSandbox)
-    throw std::logic_error("main does not call serveSandbox");
+  const ChildProgram program = ChildProgram::choose(m_job.name);
   std::array<int, 2> ends{};
+  int failed = 0;
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) {
     m_connection = Descriptor(ends[0]);
-    m_child = spawn(m_job.name, *Descriptor(ends[1]));
+    failed = spawn(program, *Descriptor(ends[1]), m_child);
+  } else {
+    failed = errno;
   }
-  if (m_child != 0)
-    return;
-  end();
-  throw outputError(ErrorCode::outOfMemory, "memory",
-                    "cannot start a process to read files; close other programs");
+  m_thread = ::gettid();
+  try {
+    checkStart(failed, program.file);
+    checkBuild(*m_connection, program.file);
+  } catch (...) {
+    end();
+    throw;
+  }
 }
 
 void SandboxedReader::end() {
-  if (m_child != 0) {
+  siginfo_t state{};
+  // Not if the process id is not a child's: this process was forked from the parent, or the program
+  // has waited for the child.
+  if (m_child != 0 && retryOnEintr([&] {
+                        return ::waitid(P_PID, static_cast<id_t>(m_child), &state,
+                                        WEXITED | WNOHANG | WNOWAIT);
+                      }) == 0) {
     ::kill(m_child, SIGKILL);
     retryOnEintr([this] { return ::waitpid(m_child, nullptr, 0); });
   }
@@ -245,6 +299,10 @@ std::optional<std::string> SandboxedReader::request(const std::string& message,
                                                     std::uint64_t maxBytes) {
   if (message.size() > maxRequestBytes)
     return std::nullopt;
+  if (readsInProcess)
+    return handleHere(message, maxBytes);
+  if (m_thread != ::gettid())
+    end();
   if (m_child == 0)
     start();
   constexpr unsigned wallClockFactor = 3;
@@ -255,6 +313,26 @@ std::optional<std::string> SandboxedReader::request(const std::string& message,
   if (!reply)
     end();
   return reply;
+}
+
+std::optional<std::string> SandboxedReader::handleHere(const std::string& message,
+                                                       std::uint64_t maxBytes) {
+  static std::mutex mutex; // the libraries have global state, and HDF5 no locks
+  const std::lock_guard lock(mutex);
+  if (!m_handler)
+    m_handler = m_job.handler;
+  try {
+    std::string reply = m_handler(message);
+    return reply.size() > maxBytes ? std::nullopt : std::optional(std::move(reply));
+  } catch (...) { // the caller reports the error
+    return "";
+  }
+}
+
+InProcessReading::InProcessReading() : m_previous(std::exchange(readsInProcess, true)) {}
+
+InProcessReading::~InProcessReading() {
+  readsInProcess = m_previous;
 }
 
 std::string ReplyReader::text() {
@@ -285,7 +363,7 @@ void limitMemory(std::uint64_t bytes) {
   std::uint64_t pages = 0; // of address space
   std::ifstream("/proc/self/statm") >> pages;
   rlimit both{};
-  if (hasSanitizer || pages == 0 || ::getrlimit(RLIMIT_AS, &both) != 0)
+  if (!isChild || hasSanitizer || pages == 0 || ::getrlimit(RLIMIT_AS, &both) != 0)
     return;
   const auto used = static_cast<rlim_t>(pages) * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE));
   both.rlim_cur = std::min<rlim_t>(both.rlim_max, used + bytes);
@@ -296,9 +374,12 @@ void serveSandbox(int argc, char** argv) {
   servesSandbox = true;
   if (argc != 4 || std::string_view(argv[1]) != subcommand)
     return;
-  for (const SandboxJob* job : registeredJobs())
-    if (job->name == argv[2] && confineProcess(job->limits.bytes, argv[3]))
-      serveRequests(*job);
+  const auto job =
+      std::ranges::find(registeredJobs(), std::string_view(argv[2]), &SandboxJob::name);
+  if (job == registeredJobs().end())
+    sendFrame(childConnection, ""); // of another build: the parent has this job
+  else if (confineProcess((*job)->limits.bytes, argv[3]) && sendFrame(childConnection, readerBuild))
+    serveRequests(**job);
   ::_exit(1);
 }
 

@@ -3,11 +3,15 @@
 // libpng and libtiff. NRRD and NIfTI are read in this process, which avoids copying volumes through
 // a socket.
 //
-// The child runs the parent's executable (/proc/self/exe: the same build even if the file has been
-// replaced; the program's file if a loader was started with it). It inherits no memory, files,
-// threads or locks. A program that uses SandboxedReader must call serveSandbox first in main, as
-// fenestra, its tests and its fuzz targets do. In other programs SandboxedReader::request throws
-// std::logic_error instead of running main again.
+// The child runs the parent's executable if its main calls serveSandbox first, as fenestra, its
+// tests and its fuzz targets do (/proc/self/exe: the same build even if the file has been replaced;
+// the program's file if a loader was started with it). In other programs, which use Fenestra as a
+// library, the child runs fenestra-reader (io/ReaderProgram.h). It tells its build first: replies
+// have no format that other builds know. It inherits no memory, files, threads or locks.
+//
+// Programs that use Fenestra as a library may ignore SIGCHLD, wait for any child, change their
+// working folder, fork, and use threads: no request depends on an earlier one, except that the
+// child is killed only if it is still a child of this process. They get SIGCHLD for the children.
 //
 // Replies are as untrusted as the file, and interpreted in the parent. A file for which the child
 // crashes or exceeds its limits is rejected. One child reads all files of a folder.
@@ -16,10 +20,13 @@
 #include "io/Descriptor.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <sys/types.h>
 
 namespace fenestra::core {
 
@@ -33,8 +40,9 @@ struct SandboxLimits {
 /// beside the caller of SandboxedReader::request.
 struct SandboxJob {
   /// Handles a request in the child. An empty string or an exception means that there is no reply,
-  /// since the file does not have the expected format.
-  using Handler = std::string (*)(const std::string& request);
+  /// since the file does not have the expected format. Each SandboxedReader has a copy, which may
+  /// keep something from one request to the next.
+  using Handler = std::function<std::string(const std::string& request)>;
 
   SandboxJob(std::string name, Handler handler, SandboxLimits limits = {});
 
@@ -46,8 +54,8 @@ struct SandboxJob {
 /// One child process, started by the first request and restarted after a failure. It has no
 /// standard streams and no files of the parent. It may open 32 files, write none and dump no core.
 /// Its signal handlers are the defaults, and signals of the terminal do not reach it. The kernel
-/// kills it when the thread that started it ends: call `request` from one thread, which outlives
-/// the object.
+/// kills it when the thread that started it ends; another thread, or a forked process, starts its
+/// own. Not for concurrent use.
 class SandboxedReader {
 public:
   explicit SandboxedReader(const SandboxJob& job) : m_job(job) {}
@@ -57,16 +65,34 @@ public:
 
   /// Returns the child's reply of at most `maxBytes` bytes, not validated; empty: the handler gave
   /// no reply. nullopt: `message` exceeds 64 kB, or the child crashed, exceeded its limits or
-  /// replied with more than `maxBytes` bytes. Throws Error (output) if no process can be started.
+  /// replied with more than `maxBytes` bytes. Throws Error (output) if no process can be started
+  /// (outOfMemory), or fenestra-reader is missing (missingFile) or of another build (invalidFile).
   std::optional<std::string> request(const std::string& message, std::uint64_t maxBytes);
 
 private:
   void start();
   void end();
+  std::optional<std::string> handleHere(const std::string& message, std::uint64_t maxBytes);
 
   const SandboxJob& m_job;
-  int m_child = 0;         ///< process id; 0: not running
-  Descriptor m_connection; ///< socket to the child
+  pid_t m_child = 0;             ///< process id; 0: not running
+  pid_t m_thread = 0;            ///< that started it; of no other process
+  Descriptor m_connection;       ///< socket to the child
+  SandboxJob::Handler m_handler; ///< in this process; empty: not used yet
+};
+
+/// During its lifetime, SandboxedReader::request handles the requests of this thread in this
+/// process, one at a time: for callers that trust the files, or may not start processes. The limits
+/// of SandboxLimits do not apply, and a file for which a library crashes ends this process.
+class InProcessReading {
+public:
+  InProcessReading();
+  ~InProcessReading();
+  InProcessReading(const InProcessReading&) = delete;
+  InProcessReading& operator=(const InProcessReading&) = delete;
+
+private:
+  bool m_previous;
 };
 
 /// Encodes texts and lists of numbers in a reply, in the child: a size (8 bytes), then that many
@@ -100,11 +126,11 @@ private:
 };
 
 /// In a child's handler: lets the process allocate at most `bytes` more, within its job's limit,
-/// until the next call; then allocations fail. No effect under sanitizers.
+/// until the next call; then allocations fail. No effect under sanitizers, and in other processes.
 void limitMemory(std::uint64_t bytes);
 
 /// In a child: handles requests until the parent closes the connection or dies, and does not
-/// return. In any other process: enables SandboxedReader::request and returns.
+/// return. In any other process: lets children run this program, and returns.
 void serveSandbox(int argc, char** argv);
 
 } // namespace fenestra::core

@@ -231,6 +231,109 @@ TEST(Sandbox, ChildEndsWithItsParent) {
   ::close(pipe[1]);
 }
 
+std::string readPid(SandboxedReader& reader) {
+  return reader.request("pid", maxBytes).value_or("none");
+}
+
+TEST(Sandbox, AnotherThreadStartsItsOwnChild) {
+  SandboxedReader child(misbehavingJob);
+  std::string first;
+  std::thread([&] { first = readPid(child); }).join(); // the kernel kills the child of this thread
+  const std::string second = readPid(child);
+  EXPECT_NE(second, "none");
+  EXPECT_NE(second, first);
+  EXPECT_EQ(readPid(child), second);
+}
+
+TEST(Sandbox, AForkedProcessStartsItsOwnChild) {
+  SandboxedReader child(misbehavingJob);
+  const std::string before = readPid(child);
+  const pid_t forked = ::fork();
+  if (forked == 0) {
+    const std::string own = readPid(child);
+    ::_exit(own != before && own != "none" && readPid(child) == own ? 0 : 1);
+  }
+  int status = 0;
+  ::waitpid(forked, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(readPid(child), before);
+}
+
+TEST(Sandbox, AForkedProcessLeavesItsParentsChild) {
+  auto child = std::make_unique<SandboxedReader>(misbehavingJob);
+  const std::string before = readPid(*child);
+  const pid_t forked = ::fork();
+  if (forked == 0) {
+    child.reset();
+    ::_exit(0);
+  }
+  ::waitpid(forked, nullptr, 0);
+  EXPECT_EQ(readPid(*child), before);
+}
+
+TEST(Sandbox, TheProgramMayIgnoreEndedChildrenOrWaitForThem) {
+  const auto handler = ::signal(SIGCHLD, SIG_IGN);
+  for (const char* how : {"segv", "sleep"}) {
+    SandboxedReader child(misbehavingJob);
+    EXPECT_EQ(child.request(how, maxBytes), std::nullopt) << how;
+    EXPECT_EQ(child.request("fine", maxBytes), "fine") << how;
+  }
+  ::signal(SIGCHLD, handler);
+  SandboxedReader child(misbehavingJob);
+  const int pid = std::stoi(readPid(child));
+  ::kill(pid, SIGKILL);
+  ASSERT_EQ(::waitpid(-1, nullptr, 0), pid);
+  EXPECT_EQ(child.request("fine", maxBytes), std::nullopt);
+  EXPECT_EQ(child.request("fine", maxBytes), "fine");
+}
+
+/// Counts its requests.
+struct Counter {
+  int count = 0;
+  std::string operator()(const std::string&) { return std::to_string(++count); }
+};
+const SandboxJob countingJob("test-count", Counter());
+
+TEST(Sandbox, ReadsInThisProcessIfTheCallerAllowsIt) {
+  const std::string pid = std::to_string(::getpid());
+  SandboxedReader child(misbehavingJob);
+  EXPECT_NE(readPid(child), pid);
+  {
+    const InProcessReading inProcess;
+    { const InProcessReading nested; }
+    EXPECT_EQ(readPid(child), pid);
+    EXPECT_EQ(child.request("throw", maxBytes), "");
+    EXPECT_EQ(child.request("too long", 3), std::nullopt);
+    EXPECT_EQ(child.request(std::string(1 << 17, 'x'), maxBytes), std::nullopt);
+    std::string other;
+    std::thread([&] {
+      other = SandboxedReader(misbehavingJob).request("pid", maxBytes).value();
+    }).join();
+    EXPECT_NE(other, pid) << "another thread did not allow it";
+  }
+  EXPECT_NE(readPid(child), pid);
+}
+
+TEST(Sandbox, EachReaderHasItsOwnHandler) {
+  const auto countTwice = [] {
+    SandboxedReader reader(countingJob);
+    std::string counts = reader.request("", maxBytes).value_or("none");
+    return counts += reader.request("", maxBytes).value_or("none");
+  };
+  EXPECT_EQ(countTwice(), "12");
+  const InProcessReading inProcess;
+  EXPECT_EQ(countTwice(), "12");
+  EXPECT_EQ(countTwice(), "12");
+}
+
+TEST(Sandbox, ReadingInThisProcessLeavesItsMemoryLimit) {
+  rlimit before{}, after{};
+  ::getrlimit(RLIMIT_AS, &before);
+  limitMemory(1 << 20);
+  ::getrlimit(RLIMIT_AS, &after);
+  EXPECT_EQ(after.rlim_cur, before.rlim_cur);
+}
+
 TEST(ReplyReader, ReturnsTheValuesThatWereWritten) {
   ReplyWriter writer;
   writer.put("text");

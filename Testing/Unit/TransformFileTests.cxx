@@ -113,6 +113,7 @@ typename Transform::Pointer makeRotated() {
 }
 
 TEST(TransformFile, ReadsEveryLinearTransformType) {
+  const InProcessReading inProcess; // many files, quickly
   expectSameMap(makeRotated<itk::AffineTransform<double, 3>>().GetPointer());
   expectSameMap(makeRotated<itk::Euler3DTransform<double>>().GetPointer());
   expectSameMap(makeRotated<itk::CenteredEuler3DTransform<double>>().GetPointer());
@@ -144,6 +145,7 @@ typename Transform::Pointer makeStretched() {
 }
 
 TEST(TransformFile, ReadsScalesAndSkews) {
+  const InProcessReading inProcess; // many files, quickly
   expectSameMap(makeStretched<itk::ScaleVersor3DTransform<double>>().GetPointer());
   expectSameMap(makeStretched<itk::ScaleSkewVersor3DTransform<double>>().GetPointer());
   expectSameMap(makeStretched<itk::ComposeScaleSkewVersor3DTransform<double>>().GetPointer());
@@ -152,6 +154,7 @@ TEST(TransformFile, ReadsScalesAndSkews) {
 }
 
 TEST(TransformFile, ReadsFloatsAndTheOrderOfEulerAngles) {
+  const InProcessReading inProcess; // many files, quickly
   expectSameMap(makeRotated<itk::AffineTransform<float, 3>>().GetPointer());
   expectSameMap(makeRotated<itk::Similarity3DTransform<float>>().GetPointer());
   auto euler = makeRotated<itk::Euler3DTransform<double>>();

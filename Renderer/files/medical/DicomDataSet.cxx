@@ -6,6 +6,7 @@
 
 #include <gdcmFile.h>
 #include <gdcmSequenceOfItems.h>
+#include <gdcmTrace.h>
 
 #include <cstring>
 
@@ -72,6 +73,17 @@ DicomItems::DicomItems(const DataSet& data, const Tag& tag) {
 bool isDeflated(const gdcm::File& file) {
   return file.GetHeader().GetDataSetTransferSyntax() ==
          gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian;
+}
+
+SuppressGdcmOutput::SuppressGdcmOutput()
+    : m_hadWarnings(gdcm::Trace::GetWarningFlag()), m_hadErrors(gdcm::Trace::GetErrorFlag()) {
+  gdcm::Trace::WarningOff();
+  gdcm::Trace::ErrorOff();
+}
+
+SuppressGdcmOutput::~SuppressGdcmOutput() {
+  gdcm::Trace::SetWarning(m_hadWarnings);
+  gdcm::Trace::SetError(m_hadErrors);
 }
 
 void limitMemoryByFile(const std::filesystem::path& path) {

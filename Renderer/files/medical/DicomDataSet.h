@@ -45,6 +45,18 @@ private:
 /// True for the deflated transfer syntax, whose data sets GDCM reads only as a whole.
 bool isDeflated(const gdcm::File& file);
 
+/// Silences GDCM, which prints warnings to std::cerr, during its lifetime.
+class SuppressGdcmOutput {
+public:
+  SuppressGdcmOutput();
+  ~SuppressGdcmOutput();
+  SuppressGdcmOutput(const SuppressGdcmOutput&) = delete;
+  SuppressGdcmOutput& operator=(const SuppressGdcmOutput&) = delete;
+
+private:
+  bool m_hadWarnings, m_hadErrors;
+};
+
 /// In a child: limits memory to what a file of this size may need. GDCM allocates any length that
 /// an element declares.
 void limitMemoryByFile(const std::filesystem::path& path);

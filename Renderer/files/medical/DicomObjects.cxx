@@ -206,31 +206,41 @@ struct FramesRequest {
   std::uint64_t firstBit, bits;
 };
 
-/// Replies with a part of the pixels. They are kept for the next request.
-std::string makeFramesReply(const FramesRequest& part, const std::string& path) {
-  static std::string read, pixels;
-  if (read != path) {
-    limitMemoryByFile(path);
-    pixels = readPixels(path);
-    read = path;
-  }
-  const std::uint64_t first = part.firstBit / 8, end = (part.firstBit + part.bits + 7) / 8;
-  return end <= pixels.size() ? pixels.substr(first, end - first) : std::string();
-}
-
 /// First character of a request.
 constexpr char descriptionRequest = 'd', framesRequest = 'f';
 
-std::string handleObjectRequest(const std::string& request) {
-  if (request[0] == descriptionRequest)
-    return describeObject(request.substr(1));
-  FramesRequest part{};
-  std::memcpy(&part, request.data() + 1, sizeof part);
-  return makeFramesReply(part, request.substr(1 + sizeof part));
-}
+/// Handles the requests to one reader. Keeps the pixels of a file for the next requests.
+class ObjectHandler {
+public:
+  std::string operator()(const std::string& request) {
+    const SuppressGdcmOutput suppress;
+    if (request[0] == descriptionRequest)
+      return describeObject(request.substr(1));
+    FramesRequest part{};
+    std::memcpy(&part, request.data() + 1, sizeof part);
+    return makeFramesReply(part, request.substr(1 + sizeof part));
+  }
 
-const SandboxJob objectJob("dicom-objects", handleObjectRequest,
+private:
+  std::string makeFramesReply(const FramesRequest& part, const std::string& path) {
+    if (m_read != path) {
+      limitMemoryByFile(path);
+      m_pixels = readPixels(path);
+      m_read = path;
+    }
+    const std::uint64_t first = part.firstBit / 8, end = (part.firstBit + part.bits + 7) / 8;
+    return end <= m_pixels.size() ? m_pixels.substr(first, end - first) : std::string();
+  }
+
+  std::string m_read, m_pixels;
+};
+
+} // namespace
+
+const SandboxJob objectJob("dicom-objects", ObjectHandler(),
                            {.seconds = 10, .bytes = std::uint64_t{4} << 30});
+
+namespace {
 
 // ---- in the parent: parses descriptions
 

@@ -79,6 +79,8 @@ private:
   SandboxedReader m_reader;
 };
 
+extern const SandboxJob objectJob;
+
 /// Parses the child's reply to read(), which is untrusted. Throws std::runtime_error for a
 /// malformed reply, Error (input) for an object of another kind; `source` is the file name in
 /// messages.

@@ -194,37 +194,43 @@ DecodedFile decodeFile(const std::string& path) {
   return decoded;
 }
 
-/// Replies with one frame. The others are kept for the next requests.
-std::string makeVoxelsReply(std::uint32_t frame, const std::string& path) {
-  static std::string read;
-  static DecodedFile decoded;
-  if (read != path) {
-    read.clear();
-    decoded = {};
-    limitMemoryByFile(path);
-    decoded = decodeFile(path);
-    read = path;
+/// Handles the requests to one reader. Keeps the frames of a file for the next requests.
+class DicomHandler {
+public:
+  std::string operator()(const std::string& request) {
+    const SuppressGdcmOutput suppress;
+    if (request[0] == dicomHeaderRequest)
+      return makeHeaderReply(request.substr(1));
+    std::uint32_t frame = 0;
+    std::memcpy(&frame, request.data() + 1, sizeof frame);
+    return makeVoxelsReply(frame, request.substr(1 + sizeof frame));
   }
-  if (decoded.frames <= 1) {
-    read.clear();
-    return std::move(decoded.voxels);
-  }
-  const std::size_t bytes = decoded.voxels.size() / decoded.frames;
-  return frame < decoded.frames ? decoded.voxels.substr(frame * bytes, bytes) : std::string();
-}
 
-std::string handleDicomRequest(const std::string& request) {
-  if (request[0] == dicomHeaderRequest)
-    return makeHeaderReply(request.substr(1));
-  std::uint32_t frame = 0;
-  std::memcpy(&frame, request.data() + 1, sizeof frame);
-  return makeVoxelsReply(frame, request.substr(1 + sizeof frame));
-}
+private:
+  std::string makeVoxelsReply(std::uint32_t frame, const std::string& path) {
+    if (m_read != path) {
+      m_read.clear();
+      m_decoded = {};
+      limitMemoryByFile(path);
+      m_decoded = decodeFile(path);
+      m_read = path;
+    }
+    if (m_decoded.frames <= 1) {
+      m_read.clear();
+      return std::move(m_decoded.voxels);
+    }
+    const std::size_t bytes = m_decoded.voxels.size() / m_decoded.frames;
+    return frame < m_decoded.frames ? m_decoded.voxels.substr(frame * bytes, bytes) : std::string();
+  }
+
+  std::string m_read; ///< path of the file; empty: none
+  DecodedFile m_decoded;
+};
 
 } // namespace
 
-const SandboxJob dicomJob("dicom", handleDicomRequest);
-const SandboxJob dicomFramesJob("dicom-frames", handleDicomRequest,
+const SandboxJob dicomJob("dicom", DicomHandler());
+const SandboxJob dicomFramesJob("dicom-frames", DicomHandler(),
                                 {.seconds = 60, .bytes = std::uint64_t{8} << 30});
 
 } // namespace fenestra::core

@@ -42,7 +42,7 @@ class PngFile {
 public:
   explicit PngFile(const std::string& path)
       : m_file(std::fopen(path.c_str(), "rb")),
-        m_png(png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr)),
+        m_png(png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, failSilently, ignoreWarning)),
         m_info(png_create_info_struct(m_png)) {}
   ~PngFile() {
     png_destroy_read_struct(&m_png, &m_info, nullptr);
@@ -91,6 +91,9 @@ public:
   }
 
 private:
+  [[noreturn]] static void failSilently(png_structp png, png_const_charp) { png_longjmp(png, 1); }
+  static void ignoreWarning(png_structp, png_const_charp) {}
+
   std::FILE* m_file;
   png_structp m_png;
   png_infop m_info;
@@ -116,32 +119,6 @@ std::string readPng(const std::string& path) {
 }
 
 // ---- TIFF
-
-using Tiff = std::unique_ptr<TIFF, void (*)(TIFF*)>;
-
-/// The file at this page; null: there is none. The file stays open for the next requests, which
-/// mostly concern its next page.
-TIFF* openPage(const std::string& path, std::uint32_t page) {
-  static std::string openPath;
-  static Tiff file(nullptr, TIFFClose);
-  static std::uint32_t current = 0;
-  if (!file || openPath != path) {
-    TIFFSetErrorHandler(nullptr);
-    TIFFSetWarningHandler(nullptr);
-    file.reset(TIFFOpen(path.c_str(), "rm")); // "m": without memory mapping
-    openPath = path;
-    current = 0;
-  }
-  const bool isThere =
-      file &&
-      (page == current ||
-       (page == current + 1 ? TIFFReadDirectory(file.get())
-                            : TIFFSetDirectory(file.get(), static_cast<tdir_t>(page))) == 1);
-  current = page;
-  if (!isThere)
-    file.reset();
-  return file.get();
-}
 
 std::uint32_t readField(TIFF* tiff, std::uint32_t tag) {
   std::uint16_t value = 0;
@@ -174,8 +151,7 @@ std::optional<std::size_t> findType(TIFF* tiff) {
   return (bits == 16 ? 2U : 0U) + (format == SAMPLEFORMAT_INT ? 1U : 0U);
 }
 
-std::optional<Page> describeTiff(const std::string& path, std::uint32_t number) {
-  TIFF* const tiff = openPage(path, number);
+std::optional<Page> describeTiff(TIFF* tiff) {
   Page page;
   if (!tiff || !TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &page.header.columns) ||
       !TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &page.header.rows))
@@ -186,11 +162,10 @@ std::optional<Page> describeTiff(const std::string& path, std::uint32_t number) 
   return page;
 }
 
-std::string readTiff(const std::string& path, std::uint32_t number) {
-  const std::optional<Page> page = describeTiff(path, number);
+std::string readTiff(TIFF* tiff) {
+  const std::optional<Page> page = describeTiff(tiff);
   if (!page || page->problem != SliceProblem::none || page->header.bytes() == 0)
     return {};
-  TIFF* const tiff = openPage(path, number);
   std::string samples(page->header.bytes(), '\0');
   const std::size_t rowBytes = samples.size() / page->header.rows;
   if (static_cast<std::size_t>(TIFFScanlineSize(tiff)) != rowBytes)
@@ -215,17 +190,51 @@ std::string makeHeaderReply(const std::optional<Page>& page) {
   return reply.bytes();
 }
 
-std::string handleSliceRequest(const std::string& request) {
-  std::uint32_t page = 0;
-  std::memcpy(&page, request.data() + 1, sizeof page);
-  const std::string path = request.substr(1 + sizeof page);
-  if (request[0] == sliceHeaderRequest)
-    return makeHeaderReply(isTiff(path) ? describeTiff(path, page) : describePng(path));
-  return isTiff(path) ? readTiff(path, page) : readPng(path);
-}
+/// Handles the requests to one reader. A TIFF file stays open for the next requests, which mostly
+/// concern its next page.
+class SliceHandler {
+public:
+  std::string operator()(const std::string& request) {
+    std::uint32_t page = 0;
+    std::memcpy(&page, request.data() + 1, sizeof page);
+    const std::string path = request.substr(1 + sizeof page);
+    const bool asksHeader = request[0] == sliceHeaderRequest;
+    if (!isTiff(path))
+      return asksHeader ? makeHeaderReply(describePng(path)) : readPng(path);
+    TIFF* const tiff = openPage(path, page);
+    return asksHeader ? makeHeaderReply(describeTiff(tiff)) : readTiff(tiff);
+  }
+
+private:
+  /// The file at this page; null: there is none.
+  TIFF* openPage(const std::string& path, std::uint32_t page) {
+    if (!m_file || m_path != path) {
+      TIFFSetErrorHandler(nullptr);
+      TIFFSetWarningHandler(nullptr);
+      m_file.reset();
+      if (TIFF* const file = TIFFOpen(path.c_str(), "rm")) // "m": without memory mapping
+        m_file.reset(file, TIFFClose);
+      m_path = path;
+      m_page = 0;
+    }
+    const bool isThere =
+        m_file &&
+        (page == m_page ||
+         (page == m_page + 1 ? TIFFReadDirectory(m_file.get())
+                             : TIFFSetDirectory(m_file.get(), static_cast<tdir_t>(page))) == 1);
+    m_page = page;
+    if (!isThere)
+      m_file.reset();
+    return m_file.get();
+  }
+
+  std::string m_path;
+  std::shared_ptr<TIFF> m_file; ///< null: none; copies of this object have none
+  std::uint32_t m_page = 0;
+};
 
 } // namespace
 
-const SandboxJob sliceJob("slices", handleSliceRequest, {.seconds = 30});
+const SandboxJob sliceJob("slices", SliceHandler(), {.seconds = 30});
 
 } // namespace fenestra::core

@@ -65,6 +65,22 @@ bool isSelfContained(const std::string& path) {
 
 // ---- in the child process: read the file's numbers
 
+/// Keeps HDF5 from printing errors, in this thread during its lifetime.
+class SuppressHdf5Output {
+public:
+  SuppressHdf5Output() {
+    H5Eget_auto2(H5E_DEFAULT, &m_print, &m_data);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  }
+  ~SuppressHdf5Output() { H5Eset_auto2(H5E_DEFAULT, m_print, m_data); }
+  SuppressHdf5Output(const SuppressHdf5Output&) = delete;
+  SuppressHdf5Output& operator=(const SuppressHdf5Output&) = delete;
+
+private:
+  H5E_auto2_t m_print = nullptr;
+  void* m_data = nullptr;
+};
+
 /// Transform of any type, known or not, that only stores the file's numbers.
 class RecordedTransform : public itk::TransformBaseTemplate<double> {
 public:
@@ -111,6 +127,31 @@ protected:
   }
 };
 
+/// Makes ITK's transforms known to its factories by name.
+void registerTransforms() {
+  [[maybe_unused]] static const bool known = [] {
+    itk::TransformFactoryBase::RegisterDefaultTransforms();
+    itk::TransformFactory<itk::Rigid3DTransform<double>>::RegisterTransform();
+    return true;
+  }();
+}
+
+/// During its lifetime, ITK's readers make RecordedTransforms.
+class RecordTransforms {
+public:
+  RecordTransforms() {
+    registerTransforms();                        // else ITK would, as RecordedTransforms
+    RecordingFactory::RegisterFactory(m_factory, // ahead of ITK's factories
+                                      RecordingFactory::InsertionPositionEnum::INSERT_AT_FRONT);
+  }
+  ~RecordTransforms() { RecordingFactory::UnRegisterFactory(m_factory); }
+  RecordTransforms(const RecordTransforms&) = delete;
+  RecordTransforms& operator=(const RecordTransforms&) = delete;
+
+private:
+  const RecordingFactory::Pointer m_factory = takeOwnership(new RecordingFactory);
+};
+
 itk::TransformIOBaseTemplate<double>::Pointer makeTransformReader(const std::string& extension) {
   if (extension == ".mat")
     return itk::MatlabTransformIOTemplate<double>::New().GetPointer();
@@ -127,12 +168,12 @@ std::vector<double> copyFirst(const Parameters& parameters) {
 }
 
 std::string handleTransformRequest(const std::string& request) {
+  const SuppressHdf5Output suppress;
   const std::string extension = lowercaseExtension(request);
   if ((extension == ".h5" || extension == ".hdf5") && !isSelfContained(request))
     return {};
   const auto reader = makeTransformReader(extension);
-  RecordingFactory::RegisterFactory(takeOwnership(new RecordingFactory), // ahead of ITK's factories
-                                    RecordingFactory::InsertionPositionEnum::INSERT_AT_FRONT);
+  const RecordTransforms recording;
   reader->SetFileName(request);
   reader->Read();
   ReplyWriter reply;
@@ -144,8 +185,12 @@ std::string handleTransformRequest(const std::string& request) {
   return reply.bytes();
 }
 
+} // namespace
+
 // An HDF5 symbol tree can branch without bound; a normal transform takes a few milliseconds.
 const SandboxJob transformJob("transform", handleTransformRequest, {.seconds = 3});
+
+namespace {
 
 // ---- in the parent process: interpret the reply
 
@@ -170,11 +215,7 @@ using MatrixTransform = itk::MatrixOffsetTransformBase<double, 3, 3>;
 
 /// New ITK transform of this type; null: no such type.
 MatrixTransform::Pointer makeMatrixTransform(const std::string& type) {
-  [[maybe_unused]] static const bool known = [] {
-    itk::TransformFactoryBase::RegisterDefaultTransforms();
-    itk::TransformFactory<itk::Rigid3DTransform<double>>::RegisterTransform();
-    return true;
-  }();
+  registerTransforms();
   const auto made = itk::ObjectFactoryBase::CreateInstance((type + "_double_3_3").c_str());
   if (!made)
     return nullptr;
@@ -284,8 +325,7 @@ Affine readLinearTransform(const Path& path) {
                      " MB, so it is not a linear transform; ", hardenHint);
   checkExtension(path);
   checkNoFileReference(path);
-  // Starting a child takes longer than reading a transform, so each thread keeps its child.
-  thread_local SandboxedReader reader(transformJob);
+  SandboxedReader reader(transformJob);
   return parseTransformReply(path, reader.request(path.string(), maxReplyBytes).value_or(""));
 }
 

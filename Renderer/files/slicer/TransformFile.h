@@ -2,6 +2,7 @@
 // Reads linear transforms from Slicer's transform files.
 
 #include "base/Vector.h"
+#include "io/Sandbox.h"
 
 #include <filesystem>
 #include <string_view>
@@ -16,6 +17,8 @@ namespace fenestra::core {
 /// parameters are read), several transforms without a composite (Slicer rejects them, too),
 /// singular maps, damaged files, files over 64 MB, text files over 1 MB.
 Affine readLinearTransform(const std::filesystem::path& path);
+
+extern const SandboxJob transformJob;
 
 /// Parses the reply of the child process that read the file: type name, parameters and fixed
 /// parameters of each transform (ReplyReader). The reply is untrusted; an empty one means that the
