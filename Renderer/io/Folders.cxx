@@ -79,6 +79,7 @@ bool PrivateFolder::makeLocked(const std::filesystem::path& folder) {
 }
 
 PrivateFolder::PrivateFolder() {
+  removeStaleFolders();
   const std::filesystem::path parent = findTempRoot();
   while (!makeLocked(parent / makeTempName(folderPrefix)))
     m_entries.clear();

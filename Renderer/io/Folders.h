@@ -26,8 +26,8 @@ private:
 /// Temporary folder that only this user can read. After SIGKILL a later run removes it.
 class PrivateFolder {
 public:
-  /// Creates a folder in TMPDIR, locked (flock) while in use. Throws Error (output) if TMPDIR
-  /// cannot be written to.
+  /// Removes stale folders, and creates one in TMPDIR, locked (flock) while in use. Throws Error
+  /// (output) if TMPDIR cannot be written to.
   PrivateFolder();
   ~PrivateFolder();
   PrivateFolder(const PrivateFolder&) = delete;

@@ -4,6 +4,7 @@
 #include "io/SystemErrors.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -12,29 +13,26 @@
 #include <sys/stat.h>
 
 namespace fenestra::core {
-namespace {
 
-struct Registry {
+struct InputRegistry::Content {
   std::mutex mutex;
   std::map<FileId, std::filesystem::path> inputs;
   std::map<std::filesystem::path, FileId> results;
+
+  void addInput(const FileId& file, const std::filesystem::path& path) {
+    const std::lock_guard lock(mutex);
+    inputs.try_emplace(file, path);
+  }
+  bool isResult(const FileId& file) {
+    const std::lock_guard lock(mutex);
+    return std::any_of(results.begin(), results.end(),
+                       [&file](const auto& result) { return result.second == file; });
+  }
 };
 
-Registry& registry() {
-  static Registry registry;
-  return registry;
-}
+namespace {
 
-void addInput(const FileId& file, const std::filesystem::path& path) {
-  const std::lock_guard lock(registry().mutex);
-  registry().inputs.try_emplace(file, path);
-}
-
-bool isResult(const FileId& file) {
-  const std::lock_guard lock(registry().mutex);
-  return std::any_of(registry().results.begin(), registry().results.end(),
-                     [&file](const auto& result) { return result.second == file; });
-}
+std::atomic<InputRegistry::Content*> registry = nullptr; ///< null: there is none
 
 std::optional<FileId> getFileId(int folder, const char* path, int flags) {
   struct statx status = {};
@@ -72,6 +70,14 @@ bool hasZeroByte(const std::filesystem::path& path) {
 }
 
 } // namespace
+
+InputRegistry::InputRegistry() : m_content(std::make_unique<Content>()) {
+  registry = m_content.get();
+}
+
+InputRegistry::~InputRegistry() {
+  registry = nullptr;
+}
 
 std::optional<FileId> fileId(const std::filesystem::path& path) {
   return getFileId(AT_FDCWD, path.c_str(), 0);
@@ -130,20 +136,20 @@ void requireFile(const std::filesystem::path& path, const std::string& hint,
                      " MB; use a smaller file");
   if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
     throw readError(path, errno, "check its permissions");
-  const std::optional<FileId> file = fileId(path);
-  if (file && isResult(*file))
+  const std::optional<FileId> file = registry ? fileId(path) : std::nullopt;
+  if (file && registry.load()->isResult(*file))
     throw inputError(ErrorCode::outputConflict, path,
                      "is a result of this command; name another file");
   if (file)
-    addInput(*file, path);
+    registry.load()->addInput(*file, path);
 }
 
 void registerInput(const std::filesystem::path& path) {
   const auto addFile = [](const std::filesystem::path& file) {
     if (const std::optional<FileId> id = fileId(file))
-      addInput(*id, file);
+      registry.load()->addInput(*id, file);
   };
-  if (hasZeroByte(path))
+  if (!registry || hasZeroByte(path))
     return;
   std::error_code failed;
   const auto type = std::filesystem::status(path, failed).type();
@@ -167,25 +173,34 @@ InputConfinement::~InputConfinement() {
 }
 
 std::optional<std::filesystem::path> findInput(const FileId& file) {
-  const std::lock_guard lock(registry().mutex);
-  const auto found = registry().inputs.find(file);
-  return found == registry().inputs.end() ? std::nullopt : std::optional(found->second);
+  InputRegistry::Content* const content = registry;
+  if (!content)
+    return std::nullopt;
+  const std::lock_guard lock(content->mutex);
+  const auto found = content->inputs.find(file);
+  return found == content->inputs.end() ? std::nullopt : std::optional(found->second);
 }
 
 void unregisterInput(const FileId& file) {
-  const std::lock_guard lock(registry().mutex);
-  registry().inputs.erase(file);
+  if (InputRegistry::Content* const content = registry) {
+    const std::lock_guard lock(content->mutex);
+    content->inputs.erase(file);
+  }
 }
 
 void registerResult(const std::filesystem::path& path) {
-  const std::lock_guard lock(registry().mutex);
-  if (const auto file = fileId(path))
-    registry().results[path] = *file;
+  if (InputRegistry::Content* const content = registry) {
+    const std::lock_guard lock(content->mutex);
+    if (const auto file = fileId(path))
+      content->results[path] = *file;
+  }
 }
 
 void unregisterResult(const std::filesystem::path& path) {
-  const std::lock_guard lock(registry().mutex);
-  registry().results.erase(path);
+  if (InputRegistry::Content* const content = registry) {
+    const std::lock_guard lock(content->mutex);
+    content->results.erase(path);
+  }
 }
 
 std::string lowercaseExtension(const std::filesystem::path& path) {

@@ -1,10 +1,11 @@
 #pragma once
-// Registry of every file that the process reads: no result may replace such a file, under any name.
+// Registry of every file that a program reads: no result may replace such a file, under any name.
 // Every reader calls requireFile before it opens a file.
 
 #include <compare>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,6 +26,22 @@ std::optional<FileId> fileId(const std::filesystem::path& path);
 /// Identity of an open file.
 std::optional<FileId> fileId(int descriptor);
 
+/// Files that this process has read, and results that it has put in place, during the object's
+/// life: that of a program (program/Process). At most one exists. Without one, as in programs that
+/// use Fenestra as a library, no file is registered: a file may be read, replaced and read again.
+class InputRegistry {
+public:
+  InputRegistry();
+  ~InputRegistry();
+  InputRegistry(const InputRegistry&) = delete;
+  InputRegistry& operator=(const InputRegistry&) = delete;
+
+  struct Content;
+
+private:
+  std::unique_ptr<Content> m_content;
+};
+
 /// True if a file or folder exists at `path`; isFolder: if it is a folder. Links are followed.
 /// Throws Error (input) if the system cannot determine it.
 bool fileExists(const std::filesystem::path& path);
@@ -37,8 +54,8 @@ struct FolderContent {
 FolderContent listFolder(const std::filesystem::path& folder);
 
 /// Registers `path` as an input. Throws Error (input) unless `path` is a readable file of at most
-/// `maxBytes` bytes, inside the folder of an InputConfinement if there is one, and not a result of
-/// this process. `hint`: advice in the message if `path` is a folder.
+/// `maxBytes` bytes, inside the folder of an InputConfinement if there is one, and not a registered
+/// result. `hint`: advice in the message if `path` is a folder.
 void requireFile(const std::filesystem::path& path, const std::string& hint,
                  std::uint64_t maxBytes = UINT64_MAX);
 

@@ -4,7 +4,9 @@
 //
 // Contents are complete and synced under temporary names before the first is renamed. Names are
 // exchanged, so that a rename that fails restores the previous files. Encoders work in memory, so
-// that a full disk is detected here alone.
+// that a full disk is detected here alone. What the process has read is protected if there is an
+// InputRegistry. Programs without a handler that calls endWhenUnblocked (io/TempFiles.h) can be
+// ended by a signal between two renames.
 
 #include "io/InputRegistry.h"
 #include "io/ProvenanceTag.h"
@@ -32,7 +34,7 @@ struct ContentDigest {
 };
 ContentDigest digestContent(std::string_view content);
 
-/// True once this process has put a result in place. Async-signal-safe.
+/// True once this process has put a result in place, for its last message. Async-signal-safe.
 bool hasPlacedResults();
 
 class Outputs {

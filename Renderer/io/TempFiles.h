@@ -1,6 +1,7 @@
 #pragma once
 // Temporary files that are removed when the process ends, also by a signal; and sections of code
-// that signals must not interrupt.
+// that signals must not interrupt. The signal handlers are the program's: a program without them,
+// which uses Fenestra as a library, leaves the files of a killed process to the next run.
 
 #include <filesystem>
 #include <string>
@@ -58,8 +59,8 @@ void removeAllTempFiles();
 /// Registered names that still exist, for a message to the user.
 std::vector<std::filesystem::path> remainingTempFiles();
 
-/// Delays signals that would end the process, for example from registering a name until its file is
-/// created. Nests.
+/// Delays endWhenUnblocked, for example from registering a name until its file is created. Nests.
+/// Masks no signal, and waits only after endWhenUnblocked was called.
 class SignalBlocker {
 public:
   SignalBlocker();

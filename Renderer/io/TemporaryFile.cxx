@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <fcntl.h>
+#include <fstream>
 #include <sys/xattr.h>
 
 namespace fenestra::core {
@@ -14,12 +15,18 @@ std::filesystem::path makeSiblingName(const std::filesystem::path& target) {
   return target.parent_path() / makeTempName(tempFilePrefix);
 }
 
-/// Mode of a new file: 0666 less umask. Read before threads start, since umask is per process.
-const mode_t defaultMode = [] {
-  const mode_t mask = ::umask(077);
+/// Mode of a new file: 0666 less umask. umask(2) could only read it by changing it, also for files
+/// that other threads create meanwhile.
+mode_t getDefaultMode() {
+  constexpr std::string_view field = "Umask:";
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with(field))
+      return 0666 & ~static_cast<mode_t>(std::stoul(line.substr(field.size()), nullptr, 8));
+  const mode_t mask = ::umask(077); // kernels before 4.7
   ::umask(mask);
   return 0666 & ~mask;
-}();
+}
 
 /// Copies the access control list (acl(5)), if any, from `from` to `to`. False: cannot be set.
 bool copyAccessList(const std::filesystem::path& from, int to) {
@@ -70,7 +77,7 @@ void TemporaryFile::write(std::string_view content) {
 }
 
 void TemporaryFile::finish(Durability durability) {
-  mode_t mode = defaultMode;
+  mode_t mode = getDefaultMode();
   struct stat before = {};
   const bool targetExists = ::lstat(m_target.c_str(), &before) == 0;
   if (targetExists) {

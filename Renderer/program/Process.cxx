@@ -2,6 +2,7 @@
 
 #include "base/Error.h"
 #include "io/Folders.h"
+#include "io/InputRegistry.h"
 #include "io/MessageText.h"
 #include "io/Sandbox.h"
 #include "io/TempFiles.h"
@@ -102,6 +103,7 @@ void runProcess(int argc, char** argv, DispatchFunction dispatch) {
   serveSandbox(argc, argv); // the child does not return
   installStopHandlers();
   removeStaleFolders();
+  const InputRegistry registry;
   const int status = removeTempFiles(finishOutput(run(argc, argv, dispatch)));
   // All results are written. Destructors of the libraries' static objects are useless, take a tenth
   // of a short command's time, and print messages if memory is exhausted (HDF5).

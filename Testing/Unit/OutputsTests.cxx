@@ -43,6 +43,7 @@ protected:
   }
 
   TemporaryFolder folder;
+  const InputRegistry registry;
   Outputs outputs;
 };
 
@@ -347,35 +348,28 @@ TEST_F(OutputFiles, LockedTemporaryFileIsNotRemoved) {
   EXPECT_EQ(fileCount(), 1u);
 }
 
-TEST(Inputs, FilesOutsideArchiveFolderAreRefused) {
-  const TemporaryFolder inside, outside;
-  const fs::path member = inside.write("member", "1"), secret = outside.write("secret", "2");
-  fs::create_symlink(secret, inside / "link");
-  const InputConfinement confinement(inside.path());
-  requireFile(member, "");
-  for (const fs::path& path :
-       {secret, inside / "link", inside / ".." / secret.parent_path().filename() / "secret"})
-    EXPECT_THROW(requireFile(path, ""), Error) << path;
+TEST_F(OutputFiles, NewFilesFollowTheUmaskOfTheMoment) {
+  for (const mode_t mask : {0027, 0}) {
+    const mode_t before = ::umask(mask);
+    const std::string name = std::to_string(mask);
+    outputs.add(folder / name);
+    outputs.write(folder / name, "new");
+    outputs.commit();
+    EXPECT_EQ(::umask(before), mask);
+    EXPECT_EQ(readMode(folder / name), 0666 & ~mask);
+  }
 }
 
-TEST(Inputs, FileAboveSizeLimitIsRefused) {
-  const TemporaryFolder folder;
-  const fs::path file = folder.write("a", std::string(100, 'x'));
-  requireFile(file, "", 100);
-  EXPECT_THROW(requireFile(file, "", 99), Error);
-}
-
-/// The system ends a path at a zero byte. A folder's path with text after that byte would list the
-/// folder's entries, whose paths again resolve to the folder, without end.
-TEST_F(OutputFiles, ZeroByteInANameIsRefused) {
-  const fs::path file = readInput("a");
-  const std::string zero(1, '\0');
-  const fs::path inFolder = folder.path().native() + zero;
-  registerInput(inFolder);
-  registerInput(inFolder / "a");
-  const Error error = catchError(ErrorKind::input, "invalid-file",
-                                 [&] { requireFile(file.native() + zero + "b", ""); });
-  EXPECT_EQ(error.message().subject, file);
+TEST(PrivateFolders, ANewFolderRemovesThoseOfKilledRuns) {
+  const TemporaryFolder temporary;
+  const std::string before = std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp";
+  ::setenv("TMPDIR", temporary.path().c_str(), 1);
+  const fs::path stale = temporary / makeTempName("fenestra-scene-");
+  fs::create_directory(stale);
+  fs::permissions(stale, fs::perms::owner_all);
+  const PrivateFolder folder;
+  ::setenv("TMPDIR", before.c_str(), 1);
+  EXPECT_FALSE(fs::exists(stale));
 }
 
 TEST(PrivateFolders, NextRunRemovesFoldersOfKilledRuns) {
