@@ -1,7 +1,7 @@
 #include "io/Digest.h"
 
 #include "base/Random.h"
-#include "io/SystemErrors.h"
+#include "io/platform/SystemErrors.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,16 +1,13 @@
 #include "io/InputRegistry.h"
 
 #include "base/Error.h"
-#include "io/SystemErrors.h"
+#include "io/platform/SystemErrors.h"
 
 #include <algorithm>
 #include <atomic>
 #include <map>
 #include <mutex>
 #include <utility>
-
-#include <fcntl.h>
-#include <sys/stat.h>
 
 namespace fenestra::core {
 
@@ -33,17 +30,6 @@ struct InputRegistry::Content {
 namespace {
 
 std::atomic<InputRegistry::Content*> registry = nullptr; ///< null: there is none
-
-std::optional<FileId> getFileId(int folder, const char* path, int flags) {
-  struct statx status = {};
-  if (::statx(folder, path, flags, STATX_INO | STATX_BTIME, &status) != 0)
-    return std::nullopt;
-  const bool hasBirthTime = (status.stx_mask & STATX_BTIME) != 0;
-  return FileId{std::uint64_t{status.stx_dev_major} << 32 | status.stx_dev_minor, status.stx_ino,
-                hasBirthTime ? std::int64_t{status.stx_btime.tv_sec} * 1'000'000'000 +
-                                   status.stx_btime.tv_nsec
-                             : 0};
-}
 
 /// Canonical folder to which this thread's reads are confined; null: not confined. A pointer, since
 /// a thread_local object with a destructor ends the process if memory runs out.
@@ -77,14 +63,6 @@ InputRegistry::InputRegistry() : m_content(std::make_unique<Content>()) {
 
 InputRegistry::~InputRegistry() {
   registry = nullptr;
-}
-
-std::optional<FileId> fileId(const std::filesystem::path& path) {
-  return getFileId(AT_FDCWD, path.c_str(), 0);
-}
-
-std::optional<FileId> fileId(int descriptor) {
-  return getFileId(descriptor, "", AT_EMPTY_PATH);
 }
 
 bool fileExists(const std::filesystem::path& path) {
@@ -121,21 +99,20 @@ void requireFile(const std::filesystem::path& path, const std::string& hint,
   if (confinement && !isWithin(path, *confinement))
     throw inputError(ErrorCode::outsideArchive, path,
                      "is not inside the archive that refers to it; save the scene again");
-  struct stat status = {};
-  if (::stat(path.c_str(), &status) != 0) {
-    if (errno == ENOENT || errno == ENOTDIR)
-      throw inputError(ErrorCode::missingFile, path, "no such file; check the name");
-    throw readError(path, errno, "check its permissions and those of its folder");
-  }
-  if (S_ISDIR(status.st_mode))
+  const FileStatus status = readFileStatus(path);
+  if (status.error == ENOENT || status.error == ENOTDIR)
+    throw inputError(ErrorCode::missingFile, path, "no such file; check the name");
+  if (status.error != 0)
+    throw readError(path, status.error, "check its permissions and those of its folder");
+  if (status.isFolder)
     throw inputError(ErrorCode::notAFile, path, "is a folder; ", hint);
-  if (!S_ISREG(status.st_mode))
+  if (!status.isRegular)
     throw inputError(ErrorCode::notAFile, path, "is not a regular file; ", hint);
-  if (static_cast<std::uint64_t>(status.st_size) > maxBytes)
+  if (status.bytes > maxBytes)
     throw inputError(ErrorCode::limitExceeded, path, "is larger than ", maxBytes >> 20,
                      " MB; use a smaller file");
-  if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
-    throw readError(path, errno, "check its permissions");
+  if (const int error = findReadError(path); error != 0)
+    throw readError(path, error, "check its permissions");
   const std::optional<FileId> file = registry ? fileId(path) : std::nullopt;
   if (file && registry.load()->isResult(*file))
     throw inputError(ErrorCode::outputConflict, path,

@@ -2,7 +2,8 @@
 // Registry of every file that a program reads: no result may replace such a file, under any name.
 // Every reader calls requireFile before it opens a file.
 
-#include <compare>
+#include "io/platform/FileStatus.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -11,20 +12,6 @@
 #include <vector>
 
 namespace fenestra::core {
-
-/// Identity of a file, equal for all its names and links. `birthTime` distinguishes a later file
-/// that reuses the inode number.
-struct FileId {
-  std::uint64_t device = 0, inode = 0;
-  std::int64_t birthTime = 0; ///< ns since 1970; 0: not reported by the file system
-
-  friend auto operator<=>(const FileId&, const FileId&) = default;
-};
-
-/// Identity of the file at `path`; links are followed. nullopt: no such file.
-std::optional<FileId> fileId(const std::filesystem::path& path);
-/// Identity of an open file.
-std::optional<FileId> fileId(int descriptor);
 
 /// Files that this process has read, and results that it has put in place, during the object's
 /// life: that of a program (program/Process). At most one exists. Without one, as in programs that

@@ -2,7 +2,7 @@
 
 #include "io/InputRegistry.h"
 #include "io/MessageText.h"
-#include "io/SystemErrors.h"
+#include "io/platform/SystemErrors.h"
 
 #include <algorithm>
 #include <cerrno>

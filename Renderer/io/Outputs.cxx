@@ -3,71 +3,22 @@
 #include "base/Error.h"
 #include "io/Digest.h"
 #include "io/InputRegistry.h"
-#include "io/Locks.h"
-#include "io/SystemErrors.h"
-#include "io/TemporaryFile.h"
+#include "io/platform/Locks.h"
+#include "io/platform/OutputTarget.h"
+#include "io/platform/TemporaryFile.h"
 
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
-#include <iostream>
 #include <optional>
 #include <set>
 #include <utility>
-
-#include <fcntl.h>
 
 namespace fenestra::core {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int namedPipe = -1; ///< stream that is opened when its content is sent
-
 std::atomic<bool> anyPlaced = false;
-
-/// File that writing to `path` would change; links are followed, dangling ones as well. The folder
-/// is canonical, so that each file has one name. Throws Error (output).
-fs::path resolveTarget(const fs::path& path) {
-  constexpr int maxLinks = 40; // Linux's limit
-  std::error_code failed;
-  fs::path target = fs::absolute(path, failed);
-  if (failed)
-    throw writeError(path, failed.value());
-  for (int links = 0; fs::is_symlink(target, failed) && links < maxLinks; ++links)
-    target = target.parent_path() / fs::read_symlink(target);
-  const fs::path folder = fs::canonical(target.parent_path(), failed);
-  if (failed)
-    throw writeError(path, failed.value());
-  return folder / target.filename();
-}
-
-/// True if this process may not rename over the file: in a sticky folder, such as /tmp, only the
-/// owners of the file and of the folder may (rename(2), EPERM).
-bool isStickyProtected(const struct stat& file, const fs::path& folder) {
-  struct stat status = {};
-  const uid_t user = ::geteuid();
-  return ::stat(folder.c_str(), &status) == 0 && (status.st_mode & S_ISVTX) != 0 && user != 0 &&
-         user != file.st_uid && user != status.st_uid;
-}
-
-void requireReplaceable(const fs::path& path, const fs::path& target) {
-  struct stat status = {};
-  if (!target.has_filename())
-    throw outputError(ErrorCode::notAFile, path, "is a folder; name a file");
-  if (::lstat(target.c_str(), &status) != 0) {
-    if (errno != ENOENT)
-      throw writeError(path, errno);
-    return;
-  }
-  if (!S_ISREG(status.st_mode))
-    throw outputError(ErrorCode::notAFile, path, "is a folder or a device; name a file");
-  if ((status.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
-    throw outputError(path, "is write-protected; choose another name, or chmod u+w it");
-  if (isStickyProtected(status, target.parent_path()))
-    throw outputError(path, "belongs to another user, in a folder where only owners may replace "
-                            "files; choose another name or folder");
-}
 
 void requireNotInput(const fs::path& path, const std::optional<FileId>& file) {
   if (const auto input = file ? findInput(*file) : std::nullopt)
@@ -79,58 +30,6 @@ void requireNotInput(const fs::path& path, const std::optional<FileId>& file) {
 Error duplicateError(const fs::path& path) {
   return requestError(ErrorCode::outputConflict, path,
                       "would be written twice; give each result its own name");
-}
-
-void syncFolder(const fs::path& folder) {
-  const Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  // A folder that may be written but not read cannot be synced.
-  if (!(file.isOpen() ? ::fsync(*file) == 0 || errno == EINVAL : errno == EACCES))
-    throw writeError(folder, errno);
-}
-
-/// N of /dev/fd/N and similar paths; nullopt: other paths.
-std::optional<int> parseDescriptorNumber(const std::string& path) {
-  if (path == "/dev/stdout")
-    return STDOUT_FILENO;
-  if (path == "/dev/stderr")
-    return STDERR_FILENO;
-  for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
-    const auto number =
-        path.starts_with(folder) ? parseNumber<int>(path.substr(folder.size())) : std::nullopt;
-    if (number && *number >= 0)
-      return number;
-  }
-  return std::nullopt;
-}
-
-/// Descriptor of a result that is not a file: /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N,
-/// or `namedPipe`; nullopt: other paths. Throws Error (output) if the descriptor is not open for
-/// writing.
-std::optional<int> findStream(const fs::path& path) {
-  if (const auto number = parseDescriptorNumber(path.lexically_normal().string())) {
-    const int flags = ::fcntl(*number, F_GETFL);
-    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY)
-      throw outputError(path, "is not open for writing; redirect it, as in 3>FILE");
-    return number;
-  }
-  struct stat status = {};
-  const bool isPipe = ::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
-  return isPipe ? std::optional(namedPipe) : std::nullopt;
-}
-
-/// Throws Error (output), also if no process reads the pipe.
-void sendContent(int stream, const std::string& content, const fs::path& path) {
-  if (stream != namedPipe) {
-    std::cout.flush(); // earlier output comes first
-    std::fflush(stdout);
-    return writeAll(stream, content, path);
-  }
-  // Without O_NONBLOCK, open would block until a process reads the pipe.
-  const Descriptor file(::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
-  if (!file.isOpen())
-    throw outputError(path, "pipe has no reader; start the reader first");
-  ::fcntl(*file, F_SETFL, 0);
-  writeAll(*file, content, path);
 }
 
 } // namespace
@@ -222,6 +121,8 @@ void Outputs::write(const fs::path& path, std::string_view content) {
     return;
   }
   result.file = std::make_unique<TemporaryFile>(result.target);
+  if (const auto file = result.file->id()) // inode numbers are reused; birth times may be unknown
+    unregisterInput(*file);
   result.file->write(content);
 }
 

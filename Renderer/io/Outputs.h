@@ -5,12 +5,12 @@
 // Contents are complete and synced under temporary names before the first is renamed. Names are
 // exchanged, so that a rename that fails restores the previous files. Encoders work in memory, so
 // that a full disk is detected here alone. What the process has read is protected if there is an
-// InputRegistry. Programs without a handler that calls endWhenUnblocked (io/TempFiles.h) can be
-// ended by a signal between two renames.
+// InputRegistry. Programs without a handler that calls endWhenUnblocked (io/platform/TempFiles.h)
+// can be ended by a signal between two renames.
 
 #include "io/InputRegistry.h"
 #include "io/ProvenanceTag.h"
-#include "io/TemporaryFile.h"
+#include "io/platform/TemporaryFile.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -17,7 +17,7 @@
 // crashes or exceeds its limits is rejected. One child reads all files of a folder.
 
 #include "base/Text.h"
-#include "io/Descriptor.h"
+#include "io/platform/SandboxProcess.h"
 
 #include <cstdint>
 #include <functional>
@@ -25,8 +25,6 @@
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include <sys/types.h>
 
 namespace fenestra::core {
 
@@ -59,9 +57,6 @@ struct SandboxJob {
 class SandboxedReader {
 public:
   explicit SandboxedReader(const SandboxJob& job) : m_job(job) {}
-  ~SandboxedReader() { end(); }
-  SandboxedReader(const SandboxedReader&) = delete;
-  SandboxedReader& operator=(const SandboxedReader&) = delete;
 
   /// Returns the child's reply of at most `maxBytes` bytes, not validated; empty: the handler gave
   /// no reply. nullopt: `message` exceeds 64 kB, or the child crashed, exceeded its limits or
@@ -71,13 +66,10 @@ public:
 
 private:
   void start();
-  void end();
   std::optional<std::string> handleHere(const std::string& message, std::uint64_t maxBytes);
 
   const SandboxJob& m_job;
-  pid_t m_child = 0;             ///< process id; 0: not running
-  pid_t m_thread = 0;            ///< that started it; of no other process
-  Descriptor m_connection;       ///< socket to the child
+  SandboxProcess m_child;
   SandboxJob::Handler m_handler; ///< in this process; empty: not used yet
 };
 

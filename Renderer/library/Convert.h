@@ -6,7 +6,7 @@
 #include "fenestra/Volume.h"
 #include "files/medical/ArraySource.h"
 #include "files/medical/VolumeChoice.h"
-#include "io/HostProcess.h"
+#include "io/platform/ProcessState.h"
 #include "io/Sandbox.h"
 #include "model/volume/Grid.h"
 
@@ -39,7 +39,7 @@ inline Error toError(const core::Error& error) {
 /// wait for them forever.
 template <typename Work>
 auto guard(Work&& work) {
-  if (core::isForkedHost())
+  if (core::isForkedProcess())
     throw Error(ErrorKind::output, {"forked-process", "process",
                                     "was forked from one that used Fenestra; start it anew"});
   try {
@@ -110,11 +110,9 @@ inline core::VolumeChoice makeChoice(const ReadOptions& options) {
   return choice;
 }
 
-struct Stub {
-  ~Stub() {}
-};
-inline Stub allowReading(bool) {
-  return {};
+/// While the result lives, this thread reads files in this process if `isInProcess`.
+inline std::unique_ptr<core::InProcessReading> allowReading(bool isInProcess) {
+  return isInProcess ? std::make_unique<core::InProcessReading>() : nullptr;
 }
 
 /// Throws core::Error (input), which names `subject`.

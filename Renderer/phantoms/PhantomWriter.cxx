@@ -4,8 +4,8 @@
 #include "files/appearance/PropertyWriter.h"
 #include "files/formats/NrrdWriter.h"
 #include "files/formats/ZipWriter.h"
-#include "io/Folders.h"
 #include "io/Outputs.h"
+#include "io/platform/Folders.h"
 #include "phantoms/PhantomScene.h"
 
 #include <fstream>

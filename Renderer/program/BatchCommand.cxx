@@ -2,9 +2,9 @@
 // for bit that of `fenestra render`, and a crash costs one row.
 
 #include "base/Error.h"
-#include "io/ChildProcess.h"
 #include "io/MessageText.h"
-#include "io/SharedSlot.h"
+#include "io/platform/ChildProcess.h"
+#include "io/platform/SharedSlot.h"
 #include "program/BatchResults.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"

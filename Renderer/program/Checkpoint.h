@@ -4,8 +4,8 @@
 // instruction set is an error. `merge` reads the shards of an image through the same class.
 
 #include "base/Stopwatch.h"
-#include "io/Locks.h"
 #include "io/Outputs.h"
+#include "io/platform/Locks.h"
 #include "program/RenderSteps.h"
 #include "scene/CheckpointFile.h"
 

@@ -1,6 +1,6 @@
 #include "program/FileNames.h"
 
-#include "io/SystemErrors.h"
+#include "io/platform/SystemErrors.h"
 
 #include <utility>
 

@@ -2,12 +2,11 @@
 
 #include "base/Text.h"
 #include "io/MessageText.h"
+#include "io/platform/Streams.h"
 
 #include <atomic>
 #include <iostream>
 #include <mutex>
-
-#include <unistd.h>
 
 namespace fenestra::core {
 namespace {
@@ -17,11 +16,6 @@ constexpr std::string_view eraser = "\r\033[K";
 std::mutex mutex; ///< guards the bar and the order of the text
 std::string shownBar;
 std::atomic<bool> isBarShown = false, goesToOutput = false, mayCloseOutput = false;
-
-/// One call of write(), so that no other process writes in between.
-void write(std::string_view text) {
-  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
-}
 
 } // namespace
 
@@ -35,7 +29,7 @@ void printLine(std::string_view line) {
   if (goesToOutput)
     std::cout << text << std::flush;
   else
-    write(concat(barEraser(), text, shownBar));
+    writeToStandardError(concat(barEraser(), text, shownBar));
 }
 
 void printWarning(std::string_view warning) {
@@ -46,12 +40,12 @@ void showBar(const std::string& bar) {
   const std::lock_guard lock(mutex);
   shownBar = bar;
   isBarShown = true;
-  write(concat(eraser, bar));
+  writeToStandardError(concat(eraser, bar));
 }
 
 void eraseBar() {
   const std::lock_guard lock(mutex);
-  write(barEraser());
+  writeToStandardError(barEraser());
   shownBar.clear();
   isBarShown = false;
 }

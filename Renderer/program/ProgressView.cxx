@@ -1,11 +1,10 @@
 #include "program/ProgressView.h"
 
+#include "io/platform/Streams.h"
 #include "program/Messages.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 namespace fenestra::core {
 namespace {
@@ -27,18 +26,11 @@ std::string drawBar(double fraction, std::size_t width) {
   return std::string("[") + std::string(full, '#') + std::string(width - full, '.') + "] ";
 }
 
-/// Width of the terminal in characters, queried each time since the user may resize it.
-std::size_t queryTerminalWidth() {
-  winsize size = {};
-  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return known ? size.ws_col : 80;
-}
-
 } // namespace
 
 ProgressView::ProgressView(ProgressMode mode, const char* comment) : m_mode(mode) {
   if (m_mode == ProgressMode::automatic)
-    m_mode = ::isatty(STDERR_FILENO) ? ProgressMode::bar : ProgressMode::none;
+    m_mode = isStandardErrorTerminal() ? ProgressMode::bar : ProgressMode::none;
   if (m_mode != ProgressMode::xml)
     return;
   std::printf("<filter-start>\n<filter-name>fenestra</filter-name>\n"

@@ -5,6 +5,7 @@
 #include "files/images/ImageWriter.h"
 #include "io/JsonNode.h"
 #include "io/MessageText.h"
+#include "io/platform/ProcessState.h"
 #include "metrics/FocusMetrics.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
@@ -19,8 +20,6 @@
 #include <algorithm>
 #include <future>
 #include <iostream>
-
-#include <sys/resource.h>
 
 namespace fenestra::core {
 namespace {
@@ -38,10 +37,6 @@ struct RenderStats {
   std::optional<FocusReport> focus = {};
   std::vector<std::string> warnings = {}; ///< in addition to the scene's
 };
-
-double toSeconds(const timeval& t) {
-  return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-}
 
 Json toJson(const Distribution& values) {
   return {{"mean", values.mean}, {"p95", values.p95}, {"max", values.max}};
@@ -145,8 +140,7 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
 /// FocusReport. File names are relative to the folder of the statistics.
 std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options,
                           const PreparedScene& scene, const RenderResult& result) {
-  rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
+  const ResourceUsage usage = readResourceUsage();
   const SampleCounts samples = result.film.sampleCounts();
   const Counters& c = result.counters;
   const StageSeconds& stages = scene.seconds();
@@ -160,7 +154,7 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
                      {"transport", stats.transport},  {"filter", stats.filter},
                      {"measure", stats.measure},      {"write", stats.write},
                      {"total", stats.total}};
-  json["cpuSeconds"] = toSeconds(usage.ru_utime) + toSeconds(usage.ru_stime);
+  json["cpuSeconds"] = usage.cpuSeconds;
   json["paths"] = c.paths;
   if (stats.checkpointPaths)
     json["pathsFromFilm"] = *stats.checkpointPaths;
@@ -178,7 +172,7 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
   if (scene.features())
     for (const char* key : {"noiseDenoised", "noiseFiltered"})     // and its name in version 0.1
       json[key] = stats.filtered ? Json(*stats.filtered) : Json(); // null: unknown
-  json["peakBytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
+  json["peakBytes"] = usage.peakBytes;
   addClip(json, scene, stats.focus);
   if (const Mask* focus = scene.focus()) {
     json["focusVoxels"] = focus->grid.voxelCount();

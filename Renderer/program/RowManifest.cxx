@@ -5,7 +5,7 @@
 #include "files/medical/ReferencedFiles.h"
 #include "io/Digest.h"
 #include "io/InputRegistry.h"
-#include "io/SystemErrors.h"
+#include "io/platform/SystemErrors.h"
 #include "program/ErrorAdvice.h"
 #include "program/FileNames.h"
 #include "program/UsageError.h"

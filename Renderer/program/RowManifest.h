@@ -1,8 +1,8 @@
 #pragma once
 // Files and manifest of one row of a batch.
 
-#include "io/Folders.h"
-#include "io/Locks.h"
+#include "io/platform/Folders.h"
+#include "io/platform/Locks.h"
 #include "program/BatchTable.h"
 #include "program/Manifest.h"
 

@@ -2,14 +2,17 @@
 
 #include "base/Error.h"
 #include "io/Outputs.h"
-#include "io/TempFiles.h"
+#include "io/platform/ProcessState.h"
+#include "io/platform/Streams.h"
+#include "io/platform/TempFiles.h"
 #include "program/ErrorAdvice.h"
 #include "program/Messages.h"
 
+#include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <ctime>
 #include <string_view>
-#include <unistd.h>
 
 namespace fenestra::core {
 namespace {
@@ -37,7 +40,7 @@ void printOnce(std::string_view line) {
   if (isSaid.exchange(true))
     return;
   for (const std::string_view text : {barEraser(), line})
-    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+    writeToStandardError(text);
 }
 
 /// Async-signal-safe.
@@ -51,7 +54,7 @@ void endNow() {
   else
     printOnce("fenestra: stopped on request; nothing was written\n");
   removeAllTempFiles();
-  ::_exit(stopStatus());
+  std::_Exit(stopStatus());
 }
 
 void onSignal(int signal) {
@@ -73,16 +76,8 @@ void onSignal(int signal) {
 } // namespace
 
 void installStopHandlers() {
-  struct sigaction action = {};
-  action.sa_handler = onSignal;
-  action.sa_flags = SA_RESTART;
-  sigfillset(&action.sa_mask);
   ::signal(SIGXFSZ, SIG_IGN); // write() then returns an error, as for a full disk
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGPIPE}) {
-    struct sigaction before = {};
-    if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
-      ::sigaction(signal, &action, nullptr);
-  }
+  handleSignals({SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGPIPE}, onSignal);
 }
 
 bool isStopRequested() {
@@ -100,10 +95,9 @@ void endProcess(int status) {
   last = status;
   endWhenUnblocked([] {
     removeAllTempFiles();
-    ::_exit(last);
+    std::_Exit(last);
   });
-  for (;;)
-    ::pause();
+  waitForEnd();
 }
 
 DeferredStop::DeferredStop(std::atomic<bool>& stop) {

@@ -2,7 +2,7 @@
 // Copies rank 0's input files to the other ranks, which prepare the scene from them. Sending the
 // results of its stages instead would require a second representation of each.
 
-#include "io/Folders.h"
+#include "io/platform/Folders.h"
 #include "program/Options.h"
 #include "ranks/Ranks.h"
 

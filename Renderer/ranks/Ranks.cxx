@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <iostream>
 #include <thread>
 
 #include <mpi.h>
-#include <unistd.h>
 
 namespace fenestra::core {
 namespace {
@@ -87,7 +87,7 @@ bool Ranks::hasMessage() {
 void Ranks::abort(std::string_view line, int status) {
   std::cerr << toOneLine(concat("fenestra: error: rank ", m_rank, ": ", line)) << std::endl;
   MPI_Abort(MPI_COMM_WORLD, status); // without the lock: other threads may be inside a call
-  ::_exit(status);
+  std::_Exit(status);
 }
 
 void BackoffPoller::wait() const {

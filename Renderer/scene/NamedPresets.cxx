@@ -7,7 +7,7 @@
 #include "io/EmbeddedResources.h"
 #include "io/JsonNode.h"
 #include "io/MessageText.h"
-#include "io/SystemErrors.h"
+#include "io/platform/SystemErrors.h"
 #include "scene/SegmentMaterials.h"
 
 #include <optional>

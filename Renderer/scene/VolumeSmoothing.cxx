@@ -3,7 +3,7 @@
 #include "base/PhysicalMemory.h"
 #include "base/TextStream.h"
 #include "io/Digest.h"
-#include "io/SharedSlot.h"
+#include "io/platform/SharedSlot.h"
 #include "model/filtering/Islands.h"
 #include "model/filtering/NoiseEstimate.h"
 #include "model/filtering/NonLocalMeans.h"

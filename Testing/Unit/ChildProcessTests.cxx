@@ -1,5 +1,5 @@
-#include "io/ChildProcess.h"
-#include "io/SharedSlot.h"
+#include "io/platform/ChildProcess.h"
+#include "io/platform/SharedSlot.h"
 
 #include <gtest/gtest.h>
 

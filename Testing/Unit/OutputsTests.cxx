@@ -3,11 +3,11 @@
 
 #include "ErrorChecks.h"
 #include "TemporaryFolder.h"
-#include "io/Folders.h"
 #include "io/InputRegistry.h"
-#include "io/Locks.h"
 #include "io/Outputs.h"
-#include "io/TemporaryFile.h"
+#include "io/platform/Folders.h"
+#include "io/platform/Locks.h"
+#include "io/platform/TemporaryFile.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "io/InputRegistry.h"
 #include "io/JsonNode.h"
 #include "io/MessageText.h"
-#include "io/SystemErrors.h"
+#include "io/platform/SystemErrors.h"
 
 #include <zip.h>
 

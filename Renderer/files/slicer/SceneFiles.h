@@ -2,8 +2,8 @@
 // Files of a Slicer scene, beside a .mrml or inside a .mrb. Only this class knows where they are.
 // It unpacks archived files on demand.
 #include "base/Error.h"
-#include "io/Folders.h"
 #include "io/InputRegistry.h"
+#include "io/platform/Folders.h"
 
 #include <filesystem>
 #include <map>

@@ -2,9 +2,9 @@
 // Result being written: complete on the disk under a short name beside its target before it is
 // renamed. For io/Outputs.
 
-#include "io/Descriptor.h"
-#include "io/InputRegistry.h"
-#include "io/TempFiles.h"
+#include "io/platform/Descriptor.h"
+#include "io/platform/FileStatus.h"
+#include "io/platform/TempFiles.h"
 
 #include <optional>
 #include <string_view>
@@ -20,6 +20,8 @@ public:
   /// Creates an empty file, accessible to its owner alone, in the folder of `target`. Throws Error
   /// (output), which names `target`.
   explicit TemporaryFile(const std::filesystem::path& target);
+
+  std::optional<FileId> id() const { return fileId(*m_file); }
 
   /// Appends. Throws Error (output), also if the disk is full.
   void write(std::string_view content);

@@ -1,8 +1,8 @@
-#include "io/ChildProcess.h"
+#include "io/platform/ChildProcess.h"
 
 #include "base/Error.h"
-#include "io/SelfExec.h"
-#include "io/SystemErrors.h"
+#include "io/platform/SelfExec.h"
+#include "io/platform/SystemErrors.h"
 
 #include <algorithm>
 #include <csignal>

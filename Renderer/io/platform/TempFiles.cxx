@@ -1,7 +1,7 @@
-#include "io/TempFiles.h"
+#include "io/platform/TempFiles.h"
 
 #include "base/Text.h"
-#include "io/Descriptor.h"
+#include "io/platform/Descriptor.h"
 
 #include <atomic>
 #include <cerrno>

@@ -2,8 +2,8 @@
 // Locks between processes (flock), released however their process ends. On file systems without
 // locks every caller proceeds.
 
-#include "io/Descriptor.h"
-#include "io/TempFiles.h"
+#include "io/platform/Descriptor.h"
+#include "io/platform/TempFiles.h"
 
 #include <filesystem>
 #include <optional>

@@ -1,8 +1,8 @@
-#include "io/SharedSlot.h"
+#include "io/platform/SharedSlot.h"
 
 #include "base/PhysicalMemory.h"
 #include "base/Text.h"
-#include "io/ChildProcess.h"
+#include "io/platform/ChildProcess.h"
 
 #include <algorithm>
 #include <fcntl.h>

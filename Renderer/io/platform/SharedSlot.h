@@ -2,7 +2,7 @@
 // Memory for one result that the processes of a batch have in common. Each stores its own result
 // or reads that of another. Nothing depends on it except time: a miss is no error.
 
-#include "io/Descriptor.h"
+#include "io/platform/Descriptor.h"
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
-#include "io/TemporaryFile.h"
+#include "io/platform/TemporaryFile.h"
 
-#include "io/SystemErrors.h"
+#include "io/platform/SystemErrors.h"
 
 #include <array>
 #include <cstdio>
@@ -52,8 +52,6 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(tar
   open();
   if (!m_file.isOpen())
     throw writeError(m_target, errno);
-  if (const auto file = fileId(*m_file)) // inode numbers are reused; birth times may be unknown
-    unregisterInput(*file);
 }
 
 /// Creates the file, then locks it. Creates another if a later run has removed it in between as

@@ -1,8 +1,8 @@
-#include "io/Locks.h"
+#include "io/platform/Locks.h"
 
 #include "base/Stopwatch.h"
-#include "io/InputRegistry.h"
-#include "io/SystemErrors.h"
+#include "io/platform/FileStatus.h"
+#include "io/platform/SystemErrors.h"
 
 #include <chrono>
 #include <map>

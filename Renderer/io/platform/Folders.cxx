@@ -1,7 +1,7 @@
-#include "io/Folders.h"
+#include "io/platform/Folders.h"
 
 #include "base/Error.h"
-#include "io/SystemErrors.h"
+#include "io/platform/SystemErrors.h"
 
 #include <fcntl.h>
 

@@ -2,8 +2,8 @@
 // Folders that this process creates. They are removed by the destructor of their object, or when a
 // signal ends the process.
 
-#include "io/Descriptor.h"
-#include "io/TempFiles.h"
+#include "io/platform/Descriptor.h"
+#include "io/platform/TempFiles.h"
 
 #include <filesystem>
 #include <list>

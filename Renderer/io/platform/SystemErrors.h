@@ -2,7 +2,7 @@
 // Errors of failed system calls, with a hint for the user.
 
 #include "base/Error.h"
-#include "io/Descriptor.h"
+#include "io/platform/Descriptor.h"
 
 #include <filesystem>
 #include <string>

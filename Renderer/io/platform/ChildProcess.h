@@ -1,7 +1,7 @@
 #pragma once
 // Runs this program again as a child process, so that a crash there does not end this process.
 
-#include "io/Descriptor.h"
+#include "io/platform/Descriptor.h"
 
 #include <optional>
 #include <string>
