@@ -9,9 +9,8 @@
 // library, the child runs fenestra-reader (io/ReaderProgram.h). It tells its build first: replies
 // have no format that other builds know. It inherits no memory, files, threads or locks.
 //
-// Programs that use Fenestra as a library may ignore SIGCHLD, wait for any child, change their
-// working folder, fork, and use threads: no request depends on an earlier one, except that the
-// child is killed only if it is still a child of this process. They get SIGCHLD for the children.
+// Programs that use Fenestra as a library may ignore SIGCHLD or wait for any child, fork, and use
+// threads. They get SIGCHLD for the children.
 //
 // Replies are as untrusted as the file, and interpreted in the parent. A file for which the child
 // crashes or exceeds its limits is rejected. One child reads all files of a folder.
