@@ -26,6 +26,7 @@ include(CMakePackageConfigHelpers)
 set(package "${CMAKE_INSTALL_LIBDIR}/cmake/Fenestra")
 install(TARGETS fenestra_shared EXPORT FenestraTargets
   LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT library NAMELINK_COMPONENT library ${exclude})
+install(TARGETS fenestra-reader RUNTIME DESTINATION "${CMAKE_INSTALL_LIBDIR}/fenestra" COMPONENT library ${exclude})
 install(DIRECTORY Renderer/include/fenestra DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT library ${exclude})
 install(EXPORT FenestraTargets NAMESPACE Fenestra:: DESTINATION "${package}" COMPONENT library ${exclude})
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/FenestraConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
