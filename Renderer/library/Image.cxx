@@ -84,6 +84,16 @@ core::Display makeDisplay(const Display& display, const Image::Data& data) {
           .annotations = {display.hasScale, display.hasOrientation}};
 }
 
+std::string describe(const core::CameraPose& pose) {
+  constexpr int exact = 17; // significant digits
+  const bool isPerspective = pose.projection == core::Projection::perspective;
+  return core::concat(isPerspective ? "perspective, angle " : "orthographic, scale ",
+                      core::toString(isPerspective ? pose.angle : pose.scale, exact), "; position ",
+                      core::joinNumbers(pose.position, ",", exact), "; target ",
+                      core::joinNumbers(pose.target, ",", exact), "; up ",
+                      core::joinNumbers(pose.up, ",", exact));
+}
+
 std::span<const float> view(const std::vector<float>& values) {
   return values;
 }
@@ -97,6 +107,7 @@ Image makeImage(const core::PreparedScene& scene, const core::RenderSettings& se
       core::makeImage(result.film, scene.camera(), scene.clip(), core::allLayers);
   auto data = std::make_shared<Image::Data>();
   data->metadata = core::makeImageHeader(scene, settings, result);
+  data->metadata["camera"] = describe(scene.camera().pose());
   data->metadata["version"] = core::versionText;
   data->metadata["target"] = core::concat(core::processorText, "-", result.target);
   data->metadata["look"] = scene.transferName();

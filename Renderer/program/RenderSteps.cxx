@@ -18,6 +18,21 @@
 namespace fenestra::core {
 namespace {
 
+/// Options that reproduce the camera.
+std::string formatCamera(const CameraPose& pose) {
+  constexpr int exact = 17; // significant digits
+  const bool perspective = pose.projection == Projection::perspective;
+  return concat("--projection ", perspective ? "perspective --angle " : "orthographic --scale ",
+                toString(perspective ? pose.angle : pose.scale, exact),
+                " --position=", joinNumbers(pose.position, ",", exact),
+                " --target=", joinNumbers(pose.target, ",", exact),
+                " --up=", joinNumbers(pose.up, ",", exact));
+}
+
+std::string describeFilter(const std::optional<FilteredImage>& filtered) {
+  return describeDenoising(filtered) + "; --denoise off leaves the image raw";
+}
+
 std::map<std::string, std::string> makeHeader(const PreparedScene& scene,
                                               const RenderOptions& options,
                                               const RenderResult& result,
@@ -27,6 +42,7 @@ std::map<std::string, std::string> makeHeader(const PreparedScene& scene,
       toRelativeArguments(words, renderSyntax.options, folder);
   std::map<std::string, std::string> entries = makeImageHeader(scene, options.settings, result);
   entries["version"] = versionText;
+  entries["camera"] = formatCamera(scene.camera().pose());
   entries["target"] = concat(processorText, "-", result.target);
   entries["look"] = toRelativeName(scene.transferName(), folder);
   entries["command"] = concat("fenestra ", join(arguments, " ", quoteForShell));
@@ -43,7 +59,7 @@ void addDenoisedChannels(const RenderOptions& options, const PreparedScene& scen
   if (!options.hasFilterLayer("denoised"))
     return;
   addDenoised(image, filtered);
-  image.header["filter"] = concat("channels denoised.* are ", describeDenoising(filtered),
+  image.header["filter"] = concat("channels denoised.* are ", describeFilter(filtered),
                                   "; R, G, B and A are not denoised");
 }
 
@@ -97,7 +113,7 @@ void writeImages(const RenderOptions& options, const PreparedScene& scene,
   }
   if (filtered) {
     shown.channels = makeFilteredImage(*filtered, raw.width, raw.height).channels;
-    shown.header["filter"] = describeDenoising(filtered);
+    shown.header["filter"] = describeFilter(filtered);
     addDenoisedChannels(options, scene, *filtered, raw);
   }
   // Writes all files in parallel: compressing one does not delay the others.

@@ -7,20 +7,6 @@
 #include <algorithm>
 
 namespace fenestra::core {
-namespace {
-
-/// Options that reproduce the camera.
-std::string formatCamera(const CameraPose& pose) {
-  constexpr int exact = 17; // significant digits
-  const bool perspective = pose.projection == Projection::perspective;
-  return concat("--projection ", perspective ? "perspective --angle " : "orthographic --scale ",
-                toString(perspective ? pose.angle : pose.scale, exact),
-                " --position=", joinNumbers(pose.position, ",", exact),
-                " --target=", joinNumbers(pose.target, ",", exact),
-                " --up=", joinNumbers(pose.up, ",", exact));
-}
-
-} // namespace
 
 void checkMemory(const RenderRequest& scene) {
   constexpr double filter = 400.0; // buffers of the denoiser
@@ -88,7 +74,7 @@ std::string describeDenoising(const std::optional<FilteredImage>& filtered) {
   const std::optional<double> noise = denoisedNoise(filtered);
   return concat("denoised by local linear regression, version ", filterVersion,
                 ", on expected albedo, normal, depth and light; estimated error ",
-                noise ? toString(*noise, 3) : "unknown", "; --denoise off leaves the image raw");
+                noise ? toString(*noise, 3) : "unknown");
 }
 
 } // namespace fenestra::core

@@ -39,7 +39,7 @@ private:
 /// Estimated noise after denoising, on the scale of Film::noise(); nullopt: no estimate.
 std::optional<double> denoisedNoise(const std::optional<FilteredImage>& filtered);
 
-/// Image header: what reproduces the image, except files. The camera is written as options.
+/// Image header: what reproduces the image, except version, camera and files.
 std::map<std::string, std::string> makeImageHeader(const PreparedScene& scene,
                                                    const RenderSettings& settings,
                                                    const RenderResult& result);
