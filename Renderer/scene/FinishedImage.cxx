@@ -62,8 +62,7 @@ std::map<std::string, std::string> makeImageHeader(const PreparedScene& scene,
                                                    const RenderResult& result) {
   std::map<std::string, std::string> entries = {{"seed", concat(settings.seed)},
                                                 {"sampling", toString(settings.sampling)},
-                                                {"samples", concat(result.finishedSamples)},
-                                                {"camera", formatCamera(scene.camera().pose())}};
+                                                {"samples", concat(result.finishedSamples)}};
   if (const auto smoothing = scene.smoothing(); smoothing && smoothing->isApplied())
     entries["volume"] = describe(*smoothing);
   return entries;
