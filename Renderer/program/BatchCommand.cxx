@@ -109,6 +109,9 @@ private:
       if (manifest->finished()) {
         ++m_skipped;
         m_results.outcomes[row] = *manifest->finished();
+        if (m_options.verbose)
+          printLine(concat(m_results.rows[row].name, ": ",
+                           toString(m_results.outcomes[row].seconds, 3), " s, rendered before"));
         return;
       }
       manifest->begin();
