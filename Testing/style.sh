@@ -11,7 +11,7 @@ twice=$(git ls-files 'Renderer/*.h' | xargs grep -hoE '^(struct|class) \w+( fina
 [ -z "$twice" ] || die "two types have the same name, which the linker would merge: $twice"
 # Names reserved for the compiler, except those that it or the C library defines and fish's helper functions.
 reserved=$(git grep -noE '\b(_[A-Z]|\w*__)\w*' -- 'Renderer/*.h' 'Renderer/*.cxx' |
-  grep -vE ':(__(restrict|has_feature|attribute__|builtin_\w+|SANITIZE_\w+|rlimit_resource|fenestra_is)|_SC_\w+|_Exit|_+)$' ||
+  grep -vE ':(__(repr__|restrict|has_feature|attribute__|builtin_\w+|SANITIZE_\w+|rlimit_resource|fenestra_is)|_SC_\w+|_Exit|_+)$' ||
   true)
 [ -z "$reserved" ] || die "names reserved for the compiler: $reserved"
 say "spelling"
