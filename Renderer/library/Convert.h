@@ -41,7 +41,7 @@ template <typename Work>
 auto guard(Work&& work) {
   if (core::isForkedProcess())
     throw Error(ErrorKind::output, {"forked-process", "process",
-                                    "was forked from one that used Fenestra; start it anew"});
+                                    "was forked from one that used Fenestra; start it again"});
   try {
     return work();
   } catch (const core::Error& error) {

@@ -34,9 +34,9 @@ TEST_F(ArchiveInput, IsOpenedOnceForAllCopies) {
   const Input input(archive), copy = input;
   ASSERT_TRUE(input.document());
   std::filesystem::remove(archive); // opening it again would fail
-  const Volume volume = copy.volume({}).volume;
+  const Volume volume = copy.volume({})->volume;
   EXPECT_EQ(volume.name, "CT");
-  EXPECT_EQ(copy.segments({{}, "L"}, volume.grid).segmentation.segments().size(), 1U);
+  EXPECT_EQ(copy.segments({{}, "L"}, volume.grid)->segmentation.segments().size(), 1U);
   EXPECT_TRUE(input.segmentNames({{}, "L"}));
   EXPECT_TRUE(input.property("P").transfer);
   EXPECT_EQ(input.propertyNames(), std::vector<std::string>{"P"});
