@@ -6,8 +6,8 @@
 #include "fenestra/Volume.h"
 #include "files/medical/ArraySource.h"
 #include "files/medical/VolumeChoice.h"
-#include "io/platform/ProcessState.h"
 #include "io/Sandbox.h"
+#include "io/platform/ProcessState.h"
 #include "model/volume/Grid.h"
 
 #include <memory>
