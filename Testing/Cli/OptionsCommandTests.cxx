@@ -116,7 +116,7 @@ TEST_F(OptionsCommand, RejectsAnImageLargerThanMemory) {
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   if (memory > 60e9)
     GTEST_SKIP() << "this machine has enough memory for the largest image";
-  expectErrors({{"largest", {"volume.nrrd", "--size", "16384x16384"}, 4, "--size: | GB"}},
+  expectErrors({{"largest", {"volume.nrrd", "--size", "16384x16384"}, 4, "size: | GB"}},
                folder.path());
 }
 
