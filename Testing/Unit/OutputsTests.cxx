@@ -349,7 +349,7 @@ TEST_F(OutputFiles, LockedTemporaryFileIsNotRemoved) {
 }
 
 TEST_F(OutputFiles, NewFilesFollowTheUmaskOfTheMoment) {
-  for (const mode_t mask : {0027, 0}) {
+  for (const mode_t mask : {0027U, 0U}) {
     const mode_t before = ::umask(mask);
     const std::string name = std::to_string(mask);
     outputs.add(folder / name);
