@@ -244,7 +244,7 @@ TEST(CleanInputs, VolumesGiveNoWarning) {
   for (const CleanInput& input : volumes) {
     const TemporaryFolder folder;
     const Input opened(input.write(folder));
-    expectNone(input.name, opened.volume(opened.chooseForm({}, std::nullopt)).volume.warnings);
+    expectNone(input.name, opened.volume(opened.chooseForm({}, std::nullopt))->volume.warnings);
     expectNone(input.name, opened.findUnusedSegmentations(std::nullopt));
   }
 }
@@ -255,7 +255,7 @@ TEST(CleanInputs, SegmentationsGiveNoWarning) {
     const Path scan = writeScan("v.nrrd")(scans);
     const InputChoice choice{.segmentation = input.write(folder).string(), .focus = {"liver"}};
     const Input opened(scan);
-    const Segmentation read = opened.segments(choice, makeScanGrid()).segmentation;
+    const Segmentation read = opened.segments(choice, makeScanGrid())->segmentation;
     expectNone(input.name, read.warnings());
     EXPECT_GT(read.makeFocusMask({"liver"}, makeScanGrid()).count, 0) << input.name;
   }
@@ -276,9 +276,9 @@ TEST(CleanInputs, ScenesAndArchivesGiveNoWarning) {
                          {"a/s.seg.nrrd", readBytes(folder / "s.seg.nrrd")}});
   for (const Path& path : {scene, archive}) {
     const Input opened(path);
-    const Volume volume = opened.volume({}).volume;
+    const Volume volume = opened.volume({})->volume;
     const SceneSettings settings = opened.settings({}, true);
-    const Segmentation read = opened.segments({.focus = {"liver"}}, volume.grid).segmentation;
+    const Segmentation read = opened.segments({.focus = {"liver"}}, volume.grid)->segmentation;
     expectNone(path.c_str(), collect({&volume.warnings, &settings.warnings, &read.warnings()}));
   }
 }
