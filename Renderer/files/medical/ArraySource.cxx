@@ -39,8 +39,7 @@ private:
       for (std::int64_t x = 0; x < m_array.size.x(); ++x)
         for (std::int64_t z = 0; z < slices; ++z) {
           const Size3 at(x, y, m_nextSlice + z);
-          std::memcpy(m_slab.data() + z * m_sliceBytes +
-                          (y * m_array.size.x() + x) * m_sampleBytes,
+          std::memcpy(m_slab.data() + z * m_sliceBytes + (y * m_array.size.x() + x) * m_sampleBytes,
                       m_array.data + at.dot(m_array.steps),
                       static_cast<std::size_t>(m_sampleBytes));
         }

@@ -70,8 +70,7 @@ Segmentation packMasks(const std::string& source, std::vector<NamedMask> masks) 
       if (packing && packing->add(*mask))
         continue;
       auto [cropped, labels] = labelMask(mask->mask, mask->info.labelValue);
-      overlapping.emplace_back(source, cropped, 1, std::move(labels),
-                               std::vector{mask->info});
+      overlapping.emplace_back(source, cropped, 1, std::move(labels), std::vector{mask->info});
     }
     if (packing) // the first one has its segments
       add(packing->take(source));
