@@ -78,7 +78,7 @@ void checkBuild(SandboxProcess& child, const std::filesystem::path& program) {
 } // namespace
 
 SandboxJob::SandboxJob(std::string nameIn, Handler handlerIn, SandboxLimits limitsIn)
-    : name(std::move(nameIn)), handler(handlerIn), limits(limitsIn) {
+    : name(std::move(nameIn)), handler(std::move(handlerIn)), limits(limitsIn) {
   registeredJobs().push_back(this);
 }
 
