@@ -38,7 +38,7 @@ core::SampleArray toArray(const Samples& samples, const std::string& subject) {
   const core::SampleType type = toSampleType(samples.type);
   core::SampleArray array{
       .data = static_cast<const char*>(samples.data), .type = type, .isSwapped = samples.isSwapped};
-  const bool isPacked = samples.strides == std::array<std::int64_t, 3>();
+  const bool isPacked = std::ranges::count(samples.strides, 0) == 3;
   auto packed = static_cast<std::int64_t>(core::bytesPerSample(type));
   for (int axis = 0; axis < 3; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
