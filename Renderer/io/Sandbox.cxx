@@ -17,8 +17,8 @@
 namespace fenestra::core {
 namespace {
 
-constexpr const char* subcommand = "read-apart";   // first argument of a child; internal
-constexpr std::uint64_t maxRequestBytes = 1 << 16; // bytes; fits into a socket's buffer
+constexpr const char* subcommand = "read-sandboxed"; // first argument of a child; internal
+constexpr std::uint64_t maxRequestBytes = 1 << 16;   // bytes; fits into a socket's buffer
 
 // ---- the child
 

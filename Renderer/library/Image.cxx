@@ -94,10 +94,6 @@ std::string describe(const core::CameraPose& pose) {
                       core::joinNumbers(pose.up, ",", exact));
 }
 
-std::span<const float> view(const std::vector<float>& values) {
-  return values;
-}
-
 } // namespace
 
 Image makeImage(const core::PreparedScene& scene, const core::RenderSettings& settings,
@@ -137,28 +133,28 @@ int Image::height() const {
   return m_data->height;
 }
 std::span<const float> Image::rgba() const {
-  return view(m_data->rgba);
+  return m_data->rgba;
 }
 std::span<const float> Image::denoised() const {
-  return view(m_data->denoised);
+  return m_data->denoised;
 }
 std::span<const float> Image::depth() const {
-  return view(m_data->depth);
+  return m_data->depth;
 }
 std::span<const float> Image::clipDepth() const {
-  return view(m_data->clipDepth);
+  return m_data->clipDepth;
 }
 std::span<const float> Image::normals() const {
-  return view(m_data->normals);
+  return m_data->normals;
 }
 std::span<const float> Image::albedo() const {
-  return view(m_data->albedo);
+  return m_data->albedo;
 }
 std::span<const float> Image::error() const {
-  return view(m_data->error);
+  return m_data->error;
 }
 std::span<const float> Image::sampleCounts() const {
-  return view(m_data->sampleCounts);
+  return m_data->sampleCounts;
 }
 double Image::noise() const {
   return m_data->noise;
