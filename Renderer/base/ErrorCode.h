@@ -61,7 +61,7 @@ enum class ErrorCode : std::uint8_t {
   tooManyMaterials,
   unknownLabelVersion, ///< of TotalSegmentator
   unmatchedLabels,     ///< a requested table names no value of the file
-  unnamedSegments,     ///< a segment is unknown, and all have default names
+  unnamedSegments,     ///< a segment is sought by name, and all have default names
   unusedLabels,        ///< warning: a table beside the file
   unusedSegmentation,  ///< warning: beside the volume
 

@@ -20,8 +20,9 @@ struct Segmentation::Data {
 
 struct Scene::Data {
   core::Input input;
-  core::RenderRequest request; ///< without size and features
-  SceneOptions options;
+  core::RenderRequest request;            ///< without size and features
+  SceneOptions options;                   ///< as given
+  std::optional<std::string> preset = {}; ///< name of the chosen one
   bool isReadInProcess = false;
   std::mutex mutex = {};
   std::optional<core::PreparedScene> prepared = {}; ///< for the last image
@@ -41,8 +42,14 @@ struct Image::Data {
   std::map<std::string, std::string> metadata;
 };
 
-/// The renderer's request for the options, without size. Throws core::Error (request).
-core::RenderRequest makeRequest(const SceneOptions& options);
+/// Adds the options of the preset, if there is one, and sets its name to that of the chosen one.
+/// `sources`: chooses among several volumes and segmentations. Returns the modality for which the
+/// preset chose the transfer function, if it did. Throws core::Error (request, input).
+std::optional<core::Modality>
+applyPreset(const core::Input& input, const core::RenderRequest& sources, SceneOptions& options);
+
+/// Sets the parts of the request that the options state. Throws core::Error (request).
+void setOptions(const SceneOptions& options, core::RenderRequest& request);
 
 } // namespace v1
 } // namespace fenestra

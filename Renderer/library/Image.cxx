@@ -96,8 +96,8 @@ std::string describe(const core::CameraPose& pose) {
 
 } // namespace
 
-Image makeImage(const core::PreparedScene& scene, const core::RenderSettings& settings,
-                const core::RenderResult& result,
+Image makeImage(const core::PreparedScene& scene, const std::optional<std::string>& preset,
+                const core::RenderSettings& settings, const core::RenderResult& result,
                 const std::optional<core::FilteredImage>& filtered) {
   core::Image channels =
       core::makeImage(result.film, scene.camera(), scene.clip(), core::allLayers);
@@ -107,6 +107,8 @@ Image makeImage(const core::PreparedScene& scene, const core::RenderSettings& se
   data->metadata["version"] = core::versionText;
   data->metadata["target"] = core::concat(core::processorText, "-", result.target);
   data->metadata["look"] = scene.transferName();
+  if (preset)
+    data->metadata["preset"] = *preset;
   if (filtered) {
     core::addDenoised(channels, *filtered);
     data->metadata["filter"] = core::describeDenoising(filtered);

@@ -6,9 +6,9 @@
 namespace fenestra {
 inline namespace v1 {
 
-/// Image of a render's result. `filtered`: nullopt: not denoised.
-Image makeImage(const core::PreparedScene& scene, const core::RenderSettings& settings,
-                const core::RenderResult& result,
+/// Image of a render's result. `preset`: of the scene. `filtered`: nullopt: not denoised.
+Image makeImage(const core::PreparedScene& scene, const std::optional<std::string>& preset,
+                const core::RenderSettings& settings, const core::RenderResult& result,
                 const std::optional<core::FilteredImage>& filtered);
 
 } // namespace v1

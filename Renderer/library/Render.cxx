@@ -99,7 +99,7 @@ private:
     const core::RenderResult result = core::render(scene.view(), m_settings, m_monitor);
     if (result.finishedSamples == 0)
       throw Error(ErrorKind::request, {"stopped", "render", "was stopped before the first pass"});
-    return makeImage(scene, m_settings, result, denoiser.apply(result));
+    return makeImage(scene, m_scene->preset, m_settings, result, denoiser.apply(result));
   }
 
   const std::shared_ptr<Scene::Data> m_scene;

@@ -154,8 +154,7 @@ void setAppearance(const Appearance& appearance, core::RenderRequest& request) {
 
 } // namespace
 
-core::RenderRequest makeRequest(const SceneOptions& options) {
-  core::RenderRequest request;
+void setOptions(const SceneOptions& options, core::RenderRequest& request) {
   request.focus = options.focus;
   for (const double margin : options.margins)
     requireRange("margin", margin, -1000.0, 1000.0);
@@ -170,7 +169,6 @@ core::RenderRequest makeRequest(const SceneOptions& options) {
     throw core::requestError(core::ErrorCode::focusRequired, "view", "auto requires a focus");
   request.clip = makeClip(options.clip, !options.focus.empty());
   setAppearance(options.appearance, request);
-  return request;
 }
 
 } // namespace v1

@@ -31,11 +31,26 @@ core::PreparedScene Scene::Data::prepare(int width, int height, bool hasFeatures
 
 namespace {
 
-std::shared_ptr<Scene::Data> share(core::Input input, const SceneOptions& options) {
-  core::RenderRequest request = makeRequest(options);
+/// What chooses among several volumes and segmentations of a file, and how it is read.
+struct Sources {
+  core::VolumeChoice volume = {};
+  std::optional<std::string> segmentation = {}, labels = {};
+  bool isReadInProcess = false;
+};
+
+std::shared_ptr<Scene::Data> share(core::Input input, const SceneOptions& options,
+                                   const Sources& sources = {}) {
+  const auto reading = allowReading(sources.isReadInProcess);
+  core::RenderRequest request;
   request.input = input.path();
-  return std::shared_ptr<Scene::Data>(
-      new Scene::Data{std::move(input), std::move(request), options});
+  request.volume = sources.volume;
+  request.segmentation = sources.segmentation;
+  request.labels = sources.labels;
+  SceneOptions complete = options;
+  request.transferModality = applyPreset(input, request, complete);
+  setOptions(complete, request);
+  return std::shared_ptr<Scene::Data>(new Scene::Data{std::move(input), std::move(request), options,
+                                                      complete.preset, sources.isReadInProcess});
 }
 
 /// Throws core::Error if a segment of the focus does not exist.
@@ -72,12 +87,10 @@ Scene Scene::withOptions(const SceneOptions& options) const {
     const std::lock_guard lock(m_data->mutex);
     if (m_data->input.path().empty() && !options.focus.empty())
       requireSegments(m_data->input.segments({}), options.focus);
-    std::shared_ptr<Data> changed = share(m_data->input, options);
     const core::RenderRequest& own = m_data->request;
-    changed->request.volume = own.volume;
-    changed->request.segmentation = own.segmentation;
-    changed->request.labels = own.labels;
-    changed->isReadInProcess = m_data->isReadInProcess;
+    std::shared_ptr<Data> changed =
+        share(m_data->input, options,
+              {own.volume, own.segmentation, own.labels, m_data->isReadInProcess});
     changed->prepared = m_data->prepared;
     return Scene(std::move(changed));
   });
@@ -128,12 +141,8 @@ Scene readScene(const std::string& path, const std::optional<std::string>& segme
                 const std::optional<std::string>& labels, const SceneOptions& scene,
                 const ReadOptions& options) {
   return guard([&] {
-    std::shared_ptr<Scene::Data> data = share(core::Input(path), scene);
-    data->request.volume = makeChoice(options);
-    data->request.segmentation = segmentation;
-    data->request.labels = labels;
-    data->isReadInProcess = options.isInProcess;
-    return Scene(std::move(data));
+    return Scene(share(core::Input(path), scene,
+                       {makeChoice(options), segmentation, labels, options.isInProcess}));
   });
 }
 

@@ -34,7 +34,7 @@ constexpr auto adviceTable = [] {
       {invalidSceneCamera, "give --view"},
       {largeShapedFocus, "choose a smaller --margin or --label-smoothing"},
       {missingTransferPoints, "save the volume property, or give --transfer"},
-      {noMatchingPreset, "choose a --preset, and add --focus A,B,..."},
+      {noMatchingPreset, "choose another --preset, or add --focus A,B,..."},
       {noVoxelToColor, "remove --materials"},
       {possibleHounsfieldOffset, "--transfer-shift 1024 adapts a CT transfer function"},
       {removedHounsfieldOffset, "--transfer-shift -1024 reverts this"},
@@ -50,7 +50,7 @@ constexpr auto adviceTable = [] {
       {unknownFrame, "give another --frame, or none"},
       {unknownLabelVersion, "give --labels totalsegmentator1 or totalsegmentator2"},
       {unmatchedLabels, "give the table of this label map as --labels"},
-      {unnamedSegments, "--labels can name the values"},
+      {unnamedSegments, "--labels can name the values, and --focus takes values"},
       {unusedLabels, "--labels FILE forces its use"},
       {unusedSegmentation, "--focus NAME or --segmentation FILE uses it"},
   });

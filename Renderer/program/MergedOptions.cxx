@@ -6,13 +6,11 @@
 #include "io/MessageText.h"
 #include "program/PaperConditions.h"
 #include "program/UsageError.h"
-#include "scene/Defaults.h"
 #include "scene/NamedPresets.h"
 #include "scene/OrganPresets.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <set>
 
 namespace fenestra::core {
 namespace {
@@ -43,90 +41,6 @@ const Option& findPresetOption(const std::string& name, const std::string& sourc
     return *option;
   throw inputError(source, "flags: \"", name,
                    "\" is not an option of clipping, view or appearance; remove it");
-}
-
-/// Segments that the given focus names; all if it names none.
-std::vector<SegmentInfo> selectFocus(const OptionValues& given,
-                                     const std::vector<SegmentInfo>& segments) {
-  const std::vector<std::string> focus = given.list("focus");
-  std::vector<SegmentInfo> selected;
-  std::ranges::copy_if(segments, std::back_inserter(selected), [&](const SegmentInfo& segment) {
-    return std::ranges::any_of(
-        focus, [&](const std::string& selector) { return isSelected(segment, selector); });
-  });
-  return selected.empty() ? segments : selected;
-}
-
-/// Selectors of some of `all` segments, each once: ids, or names where several have the id.
-std::vector<std::string> makeSelectors(const std::vector<SegmentInfo>& chosen,
-                                       const std::vector<SegmentInfo>& all) {
-  std::vector<std::string> selectors;
-  for (const SegmentInfo& segment : chosen) {
-    const bool isUnique = std::ranges::count(all, segment.id, &SegmentInfo::id) == 1;
-    const std::string& selector = isUnique ? segment.id : segment.name;
-    if (std::ranges::find(selectors, selector) == selectors.end())
-      selectors.push_back(selector);
-  }
-  return selectors;
-}
-
-InputChoice makeChoice(const OptionValues& given) {
-  return {given.text("volume"), given.text("segmentation"), given.text("labels")};
-}
-
-/// Segments, by id and name, that have a voxel in the segmentation.
-std::vector<SegmentInfo> selectNonEmpty(std::vector<SegmentInfo> segments,
-                                        const Segmentation& segmentation) {
-  std::set<std::pair<std::string, std::string>> present;
-  const std::vector<SegmentStatistics> statistics = segmentation.statistics();
-  for (std::size_t i = 0; i < statistics.size(); ++i)
-    if (const SegmentInfo& one = segmentation.segments()[i]; statistics[i].voxels > 0)
-      present.emplace(one.id, one.name);
-  std::erase_if(segments, [&](const SegmentInfo& one) {
-    return !present.contains({one.id, one.name});
-  });
-  return segments;
-}
-
-OrganPreset choosePreset(const OptionValues& given, const Input& input,
-                         const std::optional<SegmentNames>& names) {
-  const std::string name = given.word("preset");
-  if (name != "auto")
-    return findOrganPreset(name);
-  if (!names)
-    throw usageError("--preset auto: chooses by segment names; add --segmentation FILE, or name a "
-                     "preset");
-  if (names->segments.empty())
-    throw inputError(names->source, "--preset auto: its segments have no names, only values; add "
-                                    "--labels with names, or name a preset and give --focus "
-                                    "A,B,...");
-  std::vector<OrganPreset> presets;
-  for (const std::string& own : listBuiltinPresets("presets"))
-    presets.push_back(findOrganPreset(own));
-  const std::vector<SegmentInfo> candidates = selectFocus(given, names->segments);
-  const auto listNonEmpty = [&] {
-    InputChoice choice = makeChoice(given);
-    choice.focus = makeSelectors(candidates, names->segments);
-    return selectNonEmpty(candidates, input.segments(choice)->segmentation);
-  };
-  return findMatchingPreset(
-      presets, candidates, names->source, listNonEmpty, [&](Modality modality) {
-        return isPlausibleModality(modality, input.volume(readVolumeChoice(given))->volume);
-      });
-}
-
-void addFocus(const OrganPreset& preset, const SegmentNames& names, OptionValues& values) {
-  if (names.segments.empty())
-    throw inputError(names.source, "--preset ", preset.name,
-                     ": its segments have no names, only values; add --labels with names, or "
-                     "--focus A,B,...");
-  const std::vector<SegmentInfo> focus = findFocusSegments(preset.focus, names.segments);
-  if (focus.empty())
-    throw inputError(names.source, "--preset ", preset.name, ": none of its segments found (only ",
-                     joinSegmentNames(names.segments),
-                     "); add --focus A,B,..., or use another preset");
-  for (const std::string& selector : makeSelectors(focus, names.segments))
-    values.add("focus", replaceAll(selector, ",", "\\,"));
 }
 
 // ---- options of a scene
@@ -199,20 +113,22 @@ std::string findRejectionReason(const Input& input, const std::string& name,
 
 PresetOptions mergePreset(const OptionValues& given, const Input& input) {
   const auto isExplicit = [&given](const std::string& name) { return isGiven(given, name); };
-  if (!given.has("preset"))
+  const std::optional<std::string> name = given.text("preset");
+  if (!name)
     return {addPaperConditions(given, isExplicit)};
   PresetOptions result{given};
-  const bool givenFocus = given.has("focus");
-  const bool byNames = given.text("preset") == "auto" || !givenFocus;
-  const auto names = byNames ? input.segmentNames(makeChoice(given)) : std::nullopt;
-  const OrganPreset preset = choosePreset(given, input, names);
   OptionValues& values = result.values;
-  if (!givenFocus && names)
-    addFocus(preset, *names, values);
+  const InputChoice choice = {given.text("volume"), given.text("segmentation"),
+                              given.text("labels"), given.list("focus")};
+  const auto [preset, focus] =
+      chooseOrganPreset(given.word("preset"), input, choice, readVolumeChoice(given));
+  if (!given.has("focus"))
+    for (const std::string& selector : focus)
+      values.add("focus", replaceAll(selector, ",", "\\,"));
   values = addPaperConditions(values, isExplicit);
   const OptionValues preferred = values;
-  for (const auto& [name, value] : preset.options) {
-    const Option& option = findPresetOption(name, *given.text("preset"));
+  for (const auto& [optionName, value] : preset.options) {
+    const Option& option = findPresetOption(optionName, *name);
     if (isOverridden(option, preferred) ||
         (!values.has("focus") &&
          (isClipOption(option) || option.overrideGroup == OverrideGroup::materials)))

@@ -230,6 +230,7 @@ Background toBackground(const py::object& value) {
 SceneOptions readSceneOptions(const py::dict& values) {
   Keywords keywords(values);
   SceneOptions options;
+  keywords.take("preset", options.preset);
   keywords.take("focus", options.focus);
   keywords.take("margin", options.margins);
   keywords.take("label_smoothing", options.labelSmoothing);

@@ -291,6 +291,10 @@ SceneTransfer Input::transfer(const std::optional<std::string>& volume,
 }
 
 std::optional<SegmentNames> Input::segmentNames(const InputChoice& given) const {
+  if (m_state->isInMemory())
+    return m_state->segments ? std::optional(SegmentNames{
+                                   "segmentation", m_state->segments->segmentation.segments()})
+                             : std::nullopt;
   InputChoice choice = given;
   choice.segmentation = segmentationFile(given);
   if (!m_state->isScene)

@@ -2,8 +2,11 @@
 
 #include "base/Error.h"
 #include "io/MessageText.h"
+#include "scene/Defaults.h"
+#include "scene/NamedPresets.h"
 
 #include <algorithm>
+#include <set>
 #include <span>
 
 namespace fenestra::core {
@@ -37,6 +40,61 @@ std::string listMatches(const Matches& matches, const std::vector<SegmentInfo>& 
     return concat(preset->name, " (", joinSegmentNames(findFocusSegments(preset->focus, segments)),
                   ")");
   });
+}
+
+/// Segments that the focus names; all if it is empty.
+std::vector<SegmentInfo> selectFocus(const std::vector<std::string>& focus,
+                                     const std::vector<SegmentInfo>& segments) {
+  std::vector<SegmentInfo> selected;
+  std::ranges::copy_if(segments, std::back_inserter(selected), [&](const SegmentInfo& segment) {
+    return std::ranges::any_of(
+        focus, [&](const std::string& selector) { return isSelected(segment, selector); });
+  });
+  return selected.empty() ? segments : selected;
+}
+
+/// Selectors of some of `all` segments, each once: ids, or names where several have the id.
+std::vector<std::string> makeSelectors(const std::vector<SegmentInfo>& chosen,
+                                       const std::vector<SegmentInfo>& all) {
+  std::vector<std::string> selectors;
+  for (const SegmentInfo& segment : chosen) {
+    const bool isUnique = std::ranges::count(all, segment.id, &SegmentInfo::id) == 1;
+    const std::string& selector = isUnique ? segment.id : segment.name;
+    if (std::ranges::find(selectors, selector) == selectors.end())
+      selectors.push_back(selector);
+  }
+  return selectors;
+}
+
+/// Segments, by id and name, that have a voxel in the segmentation.
+std::vector<SegmentInfo> selectNonEmpty(std::vector<SegmentInfo> segments,
+                                        const Segmentation& segmentation) {
+  std::set<std::pair<std::string, std::string>> present;
+  const std::vector<SegmentStatistics> statistics = segmentation.statistics();
+  for (std::size_t i = 0; i < statistics.size(); ++i)
+    if (const SegmentInfo& one = segmentation.segments()[i]; statistics[i].voxels > 0)
+      present.emplace(one.id, one.name);
+  std::erase_if(segments, [&](const SegmentInfo& one) {
+    return !present.contains({one.id, one.name});
+  });
+  return segments;
+}
+
+OrganPreset findSuitablePreset(const Input& input, const InputChoice& choice,
+                               const VolumeChoice& volume, const SegmentNames& names) {
+  std::vector<OrganPreset> presets;
+  for (const std::string& name : listBuiltinPresets("presets"))
+    presets.push_back(findOrganPreset(name));
+  const std::vector<SegmentInfo> candidates = selectFocus(choice.focus, names.segments);
+  const auto listNonEmpty = [&] {
+    InputChoice candidateChoice = choice;
+    candidateChoice.focus = makeSelectors(candidates, names.segments);
+    return selectNonEmpty(candidates, input.segments(candidateChoice)->segmentation);
+  };
+  return findMatchingPreset(presets, candidates, names.source, listNonEmpty,
+                            [&](Modality modality) {
+                              return isPlausibleModality(modality, input.volume(volume)->volume);
+                            });
 }
 
 } // namespace
@@ -87,6 +145,34 @@ const OrganPreset& findMatchingPreset(const std::vector<OrganPreset>& presets,
     throw inputError(ErrorCode::ambiguousPreset, source,
                      "several presets match, " + listMatches(matches, segments));
   return *matches.front();
+}
+
+ChosenPreset chooseOrganPreset(const std::string& name, const Input& input,
+                               const InputChoice& choice, const VolumeChoice& volume) {
+  const bool isAutomatic = name == "auto";
+  std::optional<SegmentNames> names;
+  if (isAutomatic || choice.focus.empty()) {
+    InputChoice all = choice; // of several segmentations, whichever has the preset's segments
+    all.focus.clear();
+    names = input.segmentNames(all);
+  }
+  if (isAutomatic && !names)
+    throw requestError(ErrorCode::segmentationRequired, "preset auto",
+                       "is chosen by segment names");
+  if (names && names->segments.empty())
+    throw inputError(ErrorCode::unnamedSegments, names->source, "preset ", name,
+                     " finds no segment: they have no names, only values");
+  ChosenPreset chosen = {isAutomatic ? findSuitablePreset(input, choice, volume, *names)
+                                     : findOrganPreset(name),
+                         choice.focus};
+  if (!names || !choice.focus.empty())
+    return chosen;
+  chosen.focus =
+      makeSelectors(findFocusSegments(chosen.preset.focus, names->segments), names->segments);
+  if (chosen.focus.empty())
+    throw inputError(ErrorCode::noMatchingPreset, names->source, "has no segment of preset ",
+                     chosen.preset.name, " (only ", joinSegmentNames(names->segments), ")");
+  return chosen;
 }
 
 } // namespace fenestra::core

@@ -5,6 +5,7 @@
 
 #include "files/appearance/PresetReader.h"
 #include "files/segments/SegmentationReader.h"
+#include "scene/Input.h"
 
 #include <functional>
 #include <string>
@@ -29,5 +30,17 @@ const OrganPreset& findMatchingPreset(const std::vector<OrganPreset>& presets,
                                       const std::string& source,
                                       const std::function<std::vector<SegmentInfo>()>& listNonEmpty,
                                       const std::function<bool(Modality)>& isSuitable);
+
+struct ChosenPreset {
+  OrganPreset preset;
+  std::vector<std::string> focus; ///< selectors of its segments; empty without a segmentation
+};
+
+/// The preset with a name, of a file, or for "auto" the built-in one that suits the input. The
+/// focus becomes choice.focus or, if that is empty, all segments that the preset knows. Throws
+/// Error: request if "auto" finds no segmentation; input, also if the preset knows none of the
+/// segments.
+ChosenPreset chooseOrganPreset(const std::string& name, const Input& input,
+                               const InputChoice& choice, const VolumeChoice& volume);
 
 } // namespace fenestra::core

@@ -218,6 +218,71 @@ TEST(LibraryScene, RefusesImpossibleOptions) {
             "focus-required");
 }
 
+std::string writePreset(const core::TemporaryFolder& folder, const std::string& flags) {
+  folder.write("preset.json", R"({"title": "Ball", "modality": "CT", "focus": {"names": ["ball"]},
+    "flags": )" + flags + "}");
+  return (folder / "preset.json").string();
+}
+
+TEST(LibraryScene, PresetSuppliesOptionsWithoutValue) {
+  const core::TemporaryFolder folder;
+  const Ball ball;
+  SceneOptions written = makeOptions();
+  written.view = {.name = "left", .up = Vector3{0, 1, 1}, .scale = 20.0};
+  written.clip.softness = 1.5;
+  written.appearance.transfer = "ct-bone";
+  SceneOptions preset = makeOptions();
+  preset.focus.clear();
+  preset.view.scale = 20.0;
+  preset.preset = writePreset(folder, R"({"view": "left", "up": [0, 1, 1], "scale": 90,
+    "clip-softness": 1.5, "transfer": "ct-bone"})");
+  const Scene scene(ball.volume, ball.segments, preset);
+  const Image image = render(scene, makeSmall());
+  EXPECT_EQ(copy(image.rgba()),
+            copy(render({ball.volume, ball.segments, written}, makeSmall()).rgba()));
+  EXPECT_EQ(image.metadata().at("preset"), "preset");
+  preset.view.name = written.view.name = "superior";
+  preset.view.up = written.view.up = {};
+  preset.appearance.transfer = "ct-bone";
+  preset.preset = writePreset(folder, R"({"position": [0, 300, 0], "angle": 20,
+    "clip-softness": 1.5, "transfer": "ct-skin"})");
+  EXPECT_EQ(copy(render(scene.withOptions(preset), makeSmall()).rgba()),
+            copy(render({ball.volume, ball.segments, written}, makeSmall()).rgba()));
+}
+
+TEST(LibraryScene, AutomaticPresetSuitsTheNamesOfSegments) {
+  const Ball ball;
+  const Segmentation liver(pack(ball.labels, SampleType::uint8), millimeters, {{3, "Liver"}});
+  SceneOptions options;
+  for (const char* name : {"liver", "auto"}) {
+    options.preset = name;
+    const Scene scene(ball.volume, liver, options);
+    EXPECT_EQ(render(scene, makeSmall()).metadata().at("preset"), "liver");
+    EXPECT_GT(scene.clipSurface(24, 16).points.size(), 0u) << name;
+    EXPECT_EQ(scene.options().preset, name);
+  }
+  const auto findPresetCode = [&](const char* name, const auto&... segments) {
+    options.preset = name;
+    return findCode([&] { Scene(ball.volume, segments..., options); });
+  };
+  EXPECT_EQ(findPresetCode("spine", liver), "no-matching-preset");
+  EXPECT_EQ(findPresetCode("auto", ball.segments), "no-matching-preset");
+  EXPECT_EQ(findPresetCode("no such preset", liver), "unknown-name");
+  EXPECT_EQ(findPresetCode("auto"), "segmentation-required");
+  EXPECT_EQ(findPresetCode("liver"), "no error"); // its view alone
+}
+
+TEST(LibraryScene, RefusesPresetsThatItCannotApply) {
+  const core::TemporaryFolder folder;
+  const Ball ball;
+  for (const char* flags : {R"({"clip": "hole"})", R"({"scale": "large"})", R"({"up": [1, 2]})"}) {
+    SceneOptions options;
+    options.preset = writePreset(folder, flags);
+    EXPECT_EQ(findCode([&] { Scene(ball.volume, ball.segments, options); }), "invalid-field")
+        << flags;
+  }
+}
+
 TEST(LibraryScene, ChangedSceneEqualsANewOne) {
   const Ball ball;
   const Scene first(ball.volume, ball.segments, makeOptions());

@@ -82,6 +82,9 @@ struct Appearance {
 };
 
 struct SceneOptions {
+  /// Preset of an organ, such as "liver", the file of one, or "auto": the built-in one that suits
+  /// the names of the segments. It supplies the focus and other members that have no value here.
+  std::optional<std::string> preset = {};
   /// Segments to show unobstructed: ids, names or label values.
   std::vector<std::string> focus = {};
   /// Grows the focus, or shrinks it: one value, or one per segment of the focus. Empty: in CT, what
@@ -105,7 +108,8 @@ struct Camera {
 /// threads may use scenes at the same time, also the same one.
 class FENESTRA_EXPORT Scene {
 public:
-  /// Throws Error (request, input) for options out of range, and for segments that do not exist.
+  /// Throws Error (request, input) for options out of range, for segments that do not exist, and if
+  /// no segment suits the preset.
   /// What takes long (smoothing, the clipping surface) is computed on first use.
   explicit Scene(const Volume& volume, const SceneOptions& options = {});
   Scene(const Volume& volume, const Segmentation& segmentation, const SceneOptions& options = {});

@@ -32,6 +32,8 @@ class Scene:
     The other keywords are the options of the command line (`python3 -m fenestra --help all`), with _ for -. None has
     the default that is described there. Lengths are mm, positions RAS, colors linear Rec. 709.
 
+    preset: of an organ, such as "liver", a file, or "auto": the one that suits the names of the segments. Supplies the
+        focus and other options that are None
     focus: segments to show unobstructed: one, or a list, of names or label values
     margin: grows the focus: one number, or one per segment
     plane: ((x, y, z), (nx, ny, nz)), a point and a normal
@@ -57,6 +59,7 @@ class Scene:
         volume: Optional[str] = None,
         frame: Optional[int] = None,
         spacing: Any = None,
+        preset: Any = None,
         focus: Any = None,
         margin: Any = None,
         label_smoothing: Optional[float] = None,
@@ -115,7 +118,7 @@ class Scene:
         self._warn(body.warnings() + (segments.warnings() if segments else []))
 
     def replace(self, **options: Any) -> Scene:
-        """The scene with other options: keywords of Scene() from `focus` on; None restores a default. Shares all that
+        """The scene with other options: keywords of Scene() from `preset` on; None restores a default. Shares all that
         does not differ, so that only what changes is computed again."""
         changed = object.__new__(Scene)
         changed._options = {**self._options, **options}

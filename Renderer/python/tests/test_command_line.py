@@ -35,6 +35,14 @@ def test_images_equal_those_of_the_program(files, reference, tmp_path):
     assert pixels == own
 
 
+def test_presets_choose_as_the_program_does(files, scene, tmp_path):
+    words = [files.volume, "-s", files.labels, "--labels", files.names, "--preset=auto", "--view=left", *OPTIONS]
+    assert run(*words, "-o", tmp_path / "image.nrrd").returncode == 0
+    image = scene.replace(focus=None, preset="auto", view="left").render((48, 40), samples=2)
+    assert image.metadata["preset"] == "liver"
+    assert numpy.array_equal(read_nrrd(tmp_path / "image.nrrd", (40, 48, 4)), image.rgba)
+
+
 def test_the_module_runs_the_program():
     assert fenestra.__version__ in run("--version").stdout
     assert run("missing.nii").returncode == 3
