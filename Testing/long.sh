@@ -15,7 +15,7 @@
 #   batch         a batch of 12 cases, killed halfway and resumed; jobs on a single-node Slurm cluster
 #   paths         CPU instructions per path, compared with Testing/Benchmarks/instructions.csv
 #   package       the archive in a root with only Busybox, in Debian 11, in the extension's package; a
-#                 reproducible build; the Debian package in lintian
+#                 reproducible build; the Debian package in lintian; library and Python package in Debian 12
 # Only if named as an argument:
 #   fuzz          10^6 executions of every fuzz target, at most an hour each, and 10^4 corrupted files
 #                 through the sandboxed reader of DICOM and transform files
@@ -241,6 +241,8 @@ stage_package() {
     >"$logs/package.log" 2>&1 || say "the archive has errors, or a stage was skipped: $logs/package.log"
   bash "$top/Testing/Package/deb.sh" "$top/build" strictly >"$logs/deb.log" 2>&1 ||
     say "the Debian package has errors: $logs/deb.log"
+  bash "$top/Testing/Package/root.sh" "$top/build" >"$logs/root.log" 2>&1 ||
+    say "the library does not run in Debian 12, or the stage was skipped: $logs/root.log"
 }
 
 stage_boundary() {

@@ -72,6 +72,7 @@ constexpr auto words = [] {
       {implausiblePresetModality, "implausible-preset-modality"},
       {invalidCamera, "invalid-camera"},
       {scaleOfPerspectiveCamera, "scale-of-perspective-camera"},
+      {stopped, "stopped"},
       {tinyFocus, "tiny-focus"},
       {transparentFocus, "transparent-focus"},
       {uniformVolume, "uniform-volume"},

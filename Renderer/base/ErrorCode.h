@@ -76,6 +76,7 @@ enum class ErrorCode : std::uint8_t {
   implausiblePresetModality, ///< warning
   invalidCamera,
   scaleOfPerspectiveCamera,
+  stopped,          ///< on request, before there was a result
   tinyFocus,        ///< warning: too small in the image for a clipping surface
   transparentFocus, ///< warning
   uniformVolume,

@@ -27,8 +27,10 @@ struct Scene::Data {
   std::mutex mutex = {};
   std::optional<core::PreparedScene> prepared = {}; ///< for the last image
 
-  /// The scene prepared for an image; sizes are pixels. Throws core::Error.
-  core::PreparedScene prepare(int width, int height, bool hasFeatures);
+  /// The scene prepared for an image; sizes are pixels. Throws core::Error, also once `stop` is
+  /// true.
+  core::PreparedScene prepare(int width, int height, bool hasFeatures,
+                              const core::StopFlag& stop = core::neverStopped);
 };
 
 struct Image::Data {

@@ -20,6 +20,8 @@ core::Background makeBackground(const Background& background) {
   switch (background.kind) {
   case Kind::dark:
     break;
+  case Kind::gray:
+    return core::Background::makeGray();
   case Kind::color:
     return {core::Background::Kind::color, core::Rgb(c[0], c[1], c[2])};
   case Kind::gradient:
@@ -90,7 +92,7 @@ public:
 private:
   Image renderImage() {
     const core::PreparedScene scene =
-        m_scene->prepare(m_options.width, m_options.height, m_options.isDenoised);
+        m_scene->prepare(m_options.width, m_options.height, m_options.isDenoised, m_monitor.stop);
     core::ImageDenoiser denoiser(scene);
     m_settings = makeSettings(m_options, scene, denoiser);
     m_preparingSeconds = m_watch.seconds();
@@ -98,7 +100,8 @@ private:
     m_monitor.isNoiseWanted = true;
     const core::RenderResult result = core::render(scene.view(), m_settings, m_monitor);
     if (result.finishedSamples == 0)
-      throw Error(ErrorKind::request, {"stopped", "render", "was stopped before the first pass"});
+      throw core::requestError(core::ErrorCode::stopped, "render",
+                               "was stopped before the first pass");
     return makeImage(scene, m_scene->preset, m_settings, result, denoiser.apply(result));
   }
 

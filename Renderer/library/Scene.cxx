@@ -10,7 +10,8 @@
 namespace fenestra {
 inline namespace v1 {
 
-core::PreparedScene Scene::Data::prepare(int width, int height, bool hasFeatures) {
+core::PreparedScene Scene::Data::prepare(int width, int height, bool hasFeatures,
+                                         const core::StopFlag& stop) {
   constexpr int most = 65536;
   if (width < 1 || height < 1 || width > most || height > most)
     throw core::requestError(core::ErrorCode::invalidValue, "size",
@@ -24,7 +25,8 @@ core::PreparedScene Scene::Data::prepare(int width, int height, bool hasFeatures
   const auto reading = allowReading(isReadInProcess);
   // Isolated: while it waits, this thread must not take a task that waits for the lock.
   tbb::this_task_arena::isolate([&] {
-    prepared = prepared ? prepared->withRequest(wanted) : core::PreparedScene(wanted, input);
+    prepared =
+        prepared ? prepared->withRequest(wanted, stop) : core::PreparedScene(wanted, input, stop);
   });
   return *prepared;
 }

@@ -219,6 +219,7 @@ Background toBackground(const py::object& value) {
   if (!py::isinstance<py::str>(value))
     return {Kind::color, toColor(value)};
   const Words<Kind> words = {{"dark", Kind::dark},
+                             {"gray", Kind::gray},
                              {"gradient", Kind::gradient},
                              {"transparent", Kind::transparent},
                              {"environment", Kind::environment}};

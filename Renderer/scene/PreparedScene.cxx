@@ -34,22 +34,27 @@ void refuseAssumptions(const std::vector<Message>& warnings) {
       throw Error(ErrorKind::input, warning);
 }
 
+void requireRunning(const StopFlag& stop) {
+  if (stop)
+    throw requestError(ErrorCode::stopped, "render", "was stopped before the first pass");
+}
+
 } // namespace
 
 PreparedScene::PreparedScene(const RenderRequest& request)
     : PreparedScene(request, Input(request.input)) {}
 
-PreparedScene::PreparedScene(const RenderRequest& request, const Input& input)
+PreparedScene::PreparedScene(const RenderRequest& request, const Input& input, const StopFlag& stop)
     : m_request(request), m_input(input) {
-  prepare();
+  prepare(stop);
 }
 
-PreparedScene PreparedScene::withRequest(const RenderRequest& request) const {
+PreparedScene PreparedScene::withRequest(const RenderRequest& request, const StopFlag& stop) const {
   PreparedScene scene = *this;
   scene.m_request = request;
   if (request.input != m_input.path())
     scene.m_input = Input(request.input);
-  scene.prepare();
+  scene.prepare(stop);
   return scene;
 }
 
@@ -77,10 +82,11 @@ void PreparedScene::readInput() {
                                      : Handle<std::vector<bool>>());
 }
 
-void PreparedScene::prepare() {
+void PreparedScene::prepare(const StopFlag& stop) {
   const RenderRequest& r = m_request;
   std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
   readInput();
+  requireRunning(stop);
   const auto lights = m_namedLights.get(r.lightsName(), r.environment, r.environmentMap);
   const auto settings = m_settings.result();
   const VolumeHandle raw = rawVolume();
@@ -99,7 +105,9 @@ void PreparedScene::prepare() {
   const auto transfer =
       m_transfer.get(raw, m_namedTransfer.result(), m_sceneTransfer.result(), m_content.result(),
                      r.transferModality, r.shift, r.density, r.gradient);
+  requireRunning(stop);
   const VolumeHandle volume = smooth();
+  requireRunning(stop);
   if (const std::string name = resolveMaterials(allSegments()); name != noMaterials) {
     makeTint(name);
     if (!isTintOnly(*m_plan))
@@ -119,6 +127,7 @@ void PreparedScene::prepare() {
   }
   const auto camera =
       m_camera.get(r.view, r.width, r.height, raw, settings, bounds, focus, m_view.result());
+  requireRunning(stop);
   const auto placed = m_lights.get({lights, camera, focus}, raw);
   const auto clip = m_clip.get(r.clip, r.measure, r.steadyDegrees, raw, settings, focus, camera);
   const double extinction = r.focusStyle.contextExtinction;
@@ -129,6 +138,7 @@ void PreparedScene::prepare() {
     m_style.get(focus, extinction, saturation);
   const auto majorants =
       m_majorants.get(volume, minMaxGrid, transfer, clip, m_style.result(), m_mixture.result());
+  requireRunning(stop);
   if (r.features)
     m_features.get(volume, settings, transfer, tintOrMixture(), placed, camera, clip,
                    m_style.result(), majorants);

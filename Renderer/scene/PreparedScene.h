@@ -31,12 +31,15 @@ class PreparedScene {
 public:
   /// Computes all stages. Throws Error.
   explicit PreparedScene(const RenderRequest& request);
-  /// `input`: already opened from request.input.
-  PreparedScene(const RenderRequest& request, const Input& input);
+  /// `input`: already opened from request.input. `stop` is polled between long stages; once true,
+  /// throws Error (request, ErrorCode::stopped).
+  PreparedScene(const RenderRequest& request, const Input& input,
+                const StopFlag& stop = neverStopped);
 
   /// Returns the scene of another request. Recomputes only the stages that depend on a difference
   /// from this scene's request. Files are assumed not to change. Throws Error.
-  PreparedScene withRequest(const RenderRequest& request) const;
+  PreparedScene withRequest(const RenderRequest& request,
+                            const StopFlag& stop = neverStopped) const;
 
   SceneView view() const {
     const TintOrMixture medium = tintOrMixture();
@@ -90,7 +93,7 @@ public:
 
 private:
   /// Computes all stages that m_request needs, in order.
-  void prepare();
+  void prepare(const StopFlag& stop);
   /// The first of them: volume, settings and segments of the input, and lights. Adds found lungs to
   /// the request as its focus.
   void readInput();

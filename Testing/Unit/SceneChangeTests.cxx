@@ -173,6 +173,15 @@ TEST_F(SceneChange, LampInFocusFrameFollowsTheFocus) {
   expectRefused("lights", "focus-required: lights[0].frame", [&] { PreparedScene{request}; });
 }
 
+TEST_F(SceneChange, StopEndsThePreparation) {
+  const PreparedScene before(request);
+  const StopFlag isStopped = true;
+  catchError(ErrorKind::request, "stopped: render",
+             [&] { PreparedScene(request, Input(request.input), isStopped); });
+  catchError(ErrorKind::request, "stopped: render",
+             [&] { before.withRequest(request, isStopped); });
+}
+
 TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
   request.view.name = "auto";
   const PreparedScene before(request);

@@ -12,7 +12,7 @@ enum class Quality { draft, normal, high, final };
 
 /// Behind the volume.
 struct Background {
-  enum class Kind { dark, color, gradient, transparent, environment };
+  enum class Kind { dark, gray, color, gradient, transparent, environment };
   Kind kind = Kind::dark;
   Color color = {}; ///< of `color`
 };

@@ -152,8 +152,8 @@ class Scene:
         bounces: limit of the scatterings per path, by default none
         seed: the same seed gives the same image, bit for bit, whatever the number of threads
         threads: 0: all cores
-        background: "dark", "gradient", "transparent", "environment", a gray or (r, g, b). By default that of a Slicer
-            scene, else dark
+        background: "dark", "gray", "gradient", "transparent", "environment", a number for gray, or (r, g, b). By default
+            that of a Slicer scene, else dark
         progress: True: a bar (tqdm); None: a bar in a terminal or notebook; or a function of (fraction, seconds,
             noise), called several times per second; if it returns False, the render stops
 

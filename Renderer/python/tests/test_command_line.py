@@ -71,6 +71,23 @@ def test_batch_returns_results_as_rows_end_and_resumes(table):
     assert rows[2].statistics != first.statistics
 
 
+def test_batch_accepts_rows(files, tmp_path, monkeypatch):
+    monkeypatch.chdir(files.folder)
+    options = {"size": (24, 20), "samples": 2, "volume_smoothing": "off", "quality": None}
+    cases = [
+        {"name": "a", "input": files.volume.name, "clip_softness": 0.0, "focus": ["liver", 2], "segmentation": files.labels.name},
+        {"name": "b", "input": files.volume, "view": "left", "focus": None, "segmentation": float("nan")},
+    ]
+    cases[0]["labels"] = files.names
+    rows = list(fenestra.batch(cases, tmp_path / "results", **options))
+    assert [(row.name, row.error) for row in rows] == [("a", None), ("b", None)]
+    assert rows[0].image == tmp_path / "results/a/a.png" and rows[0].statistics["focusVoxels"] > 0
+    again = list(fenestra.batch(cases, tmp_path / "results", **options))
+    assert [row.seconds for row in again] == pytest.approx([row.seconds for row in rows], rel=1e-2)  # not rendered again
+    with pytest.raises(ValueError, match="output"):
+        next(fenestra.batch(cases))
+
+
 def test_batch_raises_errors_of_the_table(tmp_path):
     (tmp_path / "cases.csv").write_text("name,inputs\na,b\n")
     for table, kind in ((tmp_path / "cases.csv", "input"), (tmp_path / "none.csv", "input")):
