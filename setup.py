@@ -1,10 +1,13 @@
 """Builds the extension module, the library and the program by CMake. The environment variable FENESTRA_BUILD names a
 build folder in which the target `python` is built already."""
 
+import atexit
 import os
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from setuptools import Extension, setup
@@ -27,7 +30,10 @@ class CMakeBuild(build_ext):
         subprocess.check_call(["cmake", "--install", build, "--component", "python", "--prefix", target])
 
 
+temporary = tempfile.mkdtemp(prefix="fenestra-")  # else setuptools writes into the sources and the folder build
+atexit.register(shutil.rmtree, temporary, ignore_errors=True)
 setup(
+    options={"build": {"build_base": temporary}, "egg_info": {"egg_base": temporary}, "bdist": {"bdist_base": temporary}},
     version=re.search(r"project\(Fenestra VERSION ([0-9.]+)", (top / "CMakeLists.txt").read_text()).group(1),
     ext_modules=[Extension("fenestra._fenestra", [])],
     cmdclass={"build_ext": CMakeBuild},

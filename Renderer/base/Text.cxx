@@ -6,6 +6,26 @@
 #include <cmath>
 
 namespace fenestra::core {
+namespace {
+
+/// Optimal string alignment distance: insertions, deletions, substitutions, adjacent swaps.
+std::size_t computeEditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i)
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      d[i][j] = std::min(
+          {d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0u : 1u)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+} // namespace
 
 std::string toString(double x, int digits) {
   std::array<char, 64> text;
@@ -100,6 +120,24 @@ std::optional<std::vector<double>> parseNumbers(std::string_view text) {
       return std::nullopt;
     at = next;
   }
+}
+
+std::string findNearest(std::string_view word, std::span<const std::string> candidates) {
+  constexpr std::size_t longest = 32; // names are shorter; a path may not be
+  std::string best;
+  std::size_t least =
+      std::min<std::size_t>(3, word.size() / 3 + 1); // a likely misspelling has fewer edits
+  if (word.empty() || word.size() > longest)
+    return best;
+  for (const std::string& candidate : candidates) {
+    const bool isPrefix = word.size() >= 2 && candidate.starts_with(word);
+    const std::size_t distance = isPrefix ? 1 : computeEditDistance(word, candidate);
+    if (distance < least) {
+      least = distance;
+      best = candidate;
+    }
+  }
+  return best;
 }
 
 } // namespace fenestra::core

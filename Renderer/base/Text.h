@@ -9,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -84,6 +85,9 @@ std::vector<std::string> split(std::string_view text, char separator);
 std::string wrapLines(std::string_view text, std::size_t width);
 /// Text with every `from` replaced by `to`.
 std::string replaceAll(std::string_view text, std::string_view from, std::string_view to);
+
+/// Candidate that `word` probably misspells or abbreviates; empty: none.
+std::string findNearest(std::string_view word, std::span<const std::string> candidates);
 
 /// The number that the complete text represents; nullopt: other text.
 template <typename Number>

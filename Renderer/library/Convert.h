@@ -3,7 +3,7 @@
 // call from outside.
 
 #include "base/CheckAffine.h"
-#include "fenestra/Volume.h"
+#include "fenestra/Segmentation.h"
 #include "files/medical/ArraySource.h"
 #include "files/medical/VolumeChoice.h"
 #include "io/Sandbox.h"
@@ -15,6 +15,13 @@
 
 namespace fenestra {
 inline namespace v1 {
+
+inline std::vector<Segment> toSegments(const std::vector<core::SegmentInfo>& infos) {
+  std::vector<Segment> segments;
+  for (const core::SegmentInfo& info : infos)
+    segments.push_back({info.id, info.name, info.labelValue});
+  return segments;
+}
 
 inline Warning toWarning(const core::Message& message) {
   return {std::string(core::toString(message.code)), message.subject, message.detail};

@@ -1,6 +1,7 @@
 #include "fenestra/Scene.h"
 
 #include "clip/mesh/SurfaceMesh.h"
+#include "io/InputRegistry.h"
 #include "library/Convert.h"
 #include "library/Data.h"
 #include "scene/FinishedImage.h"
@@ -64,6 +65,17 @@ void requireSegments(const core::SegmentsHandle& segments, const std::vector<std
     segments->segmentation.find(selector);
 }
 
+/// Segments of the input; nullopt: it has no segmentation.
+std::optional<core::SegmentNames> readSegments(const Scene::Data& data) {
+  const auto reading = allowReading(data.isReadInProcess);
+  const core::RenderRequest& request = data.request;
+  const core::InputChoice choice = {request.volume.name, request.segmentation, request.labels};
+  auto names = data.input.segmentNames(choice);
+  if (names && names->segments.empty()) // they are named by their values
+    names->segments = data.input.segments(choice)->segmentation.segments();
+  return names;
+}
+
 core::PreparedScene prepare(const std::shared_ptr<Scene::Data>& data, int width, int height) {
   return data->prepare(width, height, false);
 }
@@ -78,8 +90,13 @@ Scene::Scene(const Volume& volume, const SceneOptions& options)
 
 Scene::Scene(const Volume& volume, const Segmentation& segmentation, const SceneOptions& options)
     : m_data(guard([&] {
-        requireSegments(segmentation.data()->input, options.focus);
-        return share(core::Input(volume.data()->input, segmentation.data()->input), options);
+        const core::SegmentsHandle& segments = segmentation.data()->input;
+        const core::VolumeHandle& voxels = volume.data()->input;
+        requireSegments(segments, options.focus);
+        auto data = share(core::Input(voxels, segments), options);
+        data->request.omissions =
+            core::checkPosition("segmentation", segments->segmentation.grid(), voxels->volume.grid);
+        return data;
       })) {}
 
 Scene::Scene(std::shared_ptr<Data> data) : m_data(std::move(data)) {}
@@ -93,6 +110,7 @@ Scene Scene::withOptions(const SceneOptions& options) const {
     std::shared_ptr<Data> changed =
         share(m_data->input, options,
               {own.volume, own.segmentation, own.labels, m_data->isReadInProcess});
+    changed->request.omissions = own.omissions;
     changed->prepared = m_data->prepared;
     return Scene(std::move(changed));
   });
@@ -100,6 +118,13 @@ Scene Scene::withOptions(const SceneOptions& options) const {
 
 const SceneOptions& Scene::options() const {
   return m_data->options;
+}
+
+std::vector<Segment> Scene::segments() const {
+  return guard([&] {
+    const auto names = readSegments(*m_data);
+    return names ? toSegments(names->segments) : std::vector<Segment>();
+  });
 }
 
 std::vector<Warning> Scene::warnings(int width, int height) const {
@@ -143,8 +168,14 @@ Scene readScene(const std::string& path, const std::optional<std::string>& segme
                 const std::optional<std::string>& labels, const SceneOptions& scene,
                 const ReadOptions& options) {
   return guard([&] {
-    return Scene(share(core::Input(path), scene,
-                       {makeChoice(options), segmentation, labels, options.isInProcess}));
+    if (!core::fileExists(path))
+      throw core::inputError(core::ErrorCode::missingFile, path, "no such file; check the name");
+    auto data = share(core::Input(path), scene,
+                      {makeChoice(options), segmentation, labels, options.isInProcess});
+    if (const auto names = scene.focus.empty() ? std::nullopt : readSegments(*data))
+      for (const std::string& selector : scene.focus)
+        core::findSegment(names->segments, selector, names->source);
+    return Scene(std::move(data));
   });
 }
 

@@ -55,14 +55,21 @@ Segmentation::Segmentation(const std::vector<SegmentMask>& masks, const Affine& 
 Segmentation::Segmentation(std::shared_ptr<const Data> data) : m_data(std::move(data)) {}
 
 std::vector<Segment> Segmentation::segments() const {
-  std::vector<Segment> segments;
-  for (const core::SegmentInfo& info : m_data->input->segmentation.segments())
-    segments.push_back({info.id, info.name, info.labelValue});
-  return segments;
+  return toSegments(m_data->input->segmentation.segments());
 }
 
 std::vector<Warning> Segmentation::warnings() const {
   return toWarnings(m_data->input->segmentation.warnings());
+}
+
+std::map<std::int32_t, std::string> readLabelNames(const std::string& table) {
+  return guard([&] {
+    const auto builtIn = core::findBuiltInLabelNames(table);
+    std::map<std::int32_t, std::string> names;
+    for (const auto& [value, name] : builtIn ? *builtIn : core::readLabelNames(table))
+      names[value] = name.name;
+    return names;
+  });
 }
 
 Segmentation readSegmentation(const std::string& path, const std::optional<std::string>& labels,

@@ -24,8 +24,6 @@ inline bool isSameOption(const Option& a, const Option& b) {
   return a.name == b.name && a.placeholder == b.placeholder && a.description == b.description;
 }
 
-/// Candidate that `word` probably misspells or abbreviates; empty: none.
-std::string findNearest(std::string_view word, std::span<const std::string> candidates);
 /// Canonical name of the option that `word` probably misspells; empty: none.
 std::string findLikelyOption(std::string_view word, std::span<const Option> options);
 

@@ -256,9 +256,15 @@ RenderOptions readRenderOptions(const py::dict& values) {
   keywords.take("noise", options.noise);
   if (quality && !options.samples && !options.seconds && !options.noise)
     options = makeRenderOptions(*quality);
-  std::pair size(options.width, options.height);
-  keywords.take("size", size);
-  std::tie(options.width, options.height) = size;
+  keywords.take("size", options, [&](const py::object& value) {
+    RenderOptions changed = options;
+    try {
+      std::tie(changed.width, changed.height) = value.cast<std::pair<int, int>>();
+    } catch (const py::cast_error&) {
+      throw py::type_error("size: " + quote(value) + " is no pair (width, height) of integers");
+    }
+    return changed;
+  });
   keywords.take("denoise", options.isDenoised);
   keywords.take("bounces", options.bounces);
   keywords.take("seed", options.seed);

@@ -47,12 +47,34 @@ py::str toText(const std::string& bytes) {
       PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "replace"));
 }
 
+/// What helps, by code, in keywords of Python; empty: nothing more than the message says.
+std::string findAdvice(std::string_view of) {
+  constexpr std::pair<std::string_view, const char*> table[] = {
+      {"ambiguous-preset", "choose one, as preset='liver'"},
+      {"ambiguous-segmentation", "choose one by segmentation="},
+      {"ambiguous-volume", "choose one by volume="},
+      {"focus-outside-image", "change view, target or scale"},
+      {"no-matching-preset", "give focus="},
+      {"removed-hounsfield-offset", "transfer_shift=-1024 reverts this"},
+      {"removed-table", "table='keep' shows it"},
+      {"segmentation-required", "give segmentation="},
+      {"spacing-required", "give spacing=(x, y, z), mm"},
+      {"unknown-label-version", "give labels='totalsegmentator1' or 'totalsegmentator2'"},
+      {"unmatched-labels", "give the table of this label map as labels="},
+      {"unnamed-segments", "labels= names the values"},
+  };
+  for (const auto& [code, advice] : table)
+    if (of == code)
+      return std::string("; ") + advice;
+  return {};
+}
+
 const char* toWord(ErrorKind kind) {
   return kind == ErrorKind::request ? "request" : kind == ErrorKind::input ? "input" : "output";
 }
 
 void raise(const Error& error) {
-  py::object value = errorType(toText(error.what()));
+  py::object value = errorType(toText(error.what() + findAdvice(error.code())));
   value.attr("kind") = toWord(error.kind());
   value.attr("code") = toText(error.code());
   value.attr("subject") = toText(error.subject());
@@ -66,7 +88,7 @@ void defineError(py::module_& module) {
     members[name] = "";
   errorType = PyErr_NewExceptionWithDoc(
       "fenestra.Error",
-      "Fenestra cannot do what was asked. str(error) is 'subject: detail'.\n\n"
+      "Fenestra cannot do what was asked. str(error) is 'subject: detail', and possibly advice.\n\n"
       "kind: 'request' (impossible), 'input' (a volume, a segmentation or a file is wrong) or\n"
       "    'output' (a result cannot be written, or a resource is missing)\n"
       "code: kind of problem, such as 'missing-file'; programs may depend on it\n"
@@ -146,7 +168,7 @@ Affine makeAffine(const Numbers& matrix) {
 py::list toTexts(const std::vector<Warning>& warnings) {
   py::list texts;
   for (const Warning& warning : warnings)
-    texts.append(toText(warning.text()));
+    texts.append(toText(warning.text() + findAdvice(warning.code)));
   return texts;
 }
 
@@ -202,6 +224,10 @@ void defineInputs(py::module_& module) {
         return unlocked([&] { return readVolume(path, options); });
       },
       "path"_a, "options"_a, "Options: volume, frame, spacing.");
+  module.def(
+      "read_label_names",
+      [](const std::string& table) { return unlocked([&] { return readLabelNames(table); }); },
+      "table"_a);
   py::class_<Segmentation>(module, "Segmentation", "Segments on a grid of their own.")
       .def(py::init(&makeSegmentation), "labels"_a.noconvert(), "affine"_a, "names"_a,
            "A label map (i, j, k); 0 is the background.")
@@ -276,6 +302,13 @@ void defineScene(py::module_& module) {
             return toTexts(unlocked([&] { return scene.warnings(width, height); }));
           },
           "width"_a, "height"_a)
+      .def("segments",
+           [](const Scene& scene) {
+             std::vector<std::pair<std::int32_t, py::str>> segments;
+             for (const Segment& segment : unlocked([&] { return scene.segments(); }))
+               segments.emplace_back(segment.label, toText(segment.name));
+             return segments;
+           })
       .def("choices", ask(&Scene::choices), "width"_a, "height"_a)
       .def(
           "camera",

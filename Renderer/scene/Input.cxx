@@ -326,7 +326,8 @@ SegmentsInput Input::readSegments(const InputChoice& given, const Grid* grid) co
   const auto readFile = [&] {
     if (!choice.segmentation)
       throw inputError(ErrorCode::segmentationRequired, path(),
-                       "has no segmentation that refers to the series");
+                       dicom() ? "has no segmentation that refers to the series"
+                               : "has no segmentation, which a focus or materials need");
     Segmentation segmentation = readSegmentation(*choice.segmentation, grid, choice.labels);
     if (const DicomFolder* const folder = dicom())
       segmentation.addWarnings(checkFrameOfReference(

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
       std::fprintf(stderr, "\r%3.0f %%", 100.0 * progress.fraction);
       return true; // false stops the render
     };
-    fenestra::render(scene, {.width = 256, .height = 256, .samples = 4}, onProgress)
+    fenestra::render(scene, {.width = 256, .height = 256, .samples = 32}, onProgress)
         .save(argc > 1 ? argv[1] : "ball.png");
   } catch (const fenestra::Error& error) {
     std::fprintf(stderr, "%s (%s)\n", error.what(), error.code().c_str());

@@ -22,7 +22,7 @@ cmake -S "$example" -B "$work/cmake" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_
 cmake --build "$work/cmake" >>"$work/cmake.log" || die "$(cat "$work/cmake.log")"
 export PKG_CONFIG_PATH=$(dirname "$(find "$work/prefix" -name fenestra.pc)")
 # shellcheck disable=SC2046
-"${CXX:-g++}" "$example/example.cxx" $(pkg-config --cflags --libs fenestra) -o "$work/by-pkg-config"
+"${CXX:-g++}" -std=c++20 "$example/example.cxx" $(pkg-config --cflags --libs fenestra) -o "$work/by-pkg-config"
 
 cd "$work"
 cmake/example first.png

@@ -38,7 +38,7 @@ affine = [[2, 0, 0, -64], [0, 2, 0, -64], [0, 0, 2, -64], [0, 0, 0, 1]]
 voxels = (40 + 260 * numpy.clip(15.5 - distance, 0, 1)).astype(numpy.int16)
 scene = fenestra.Scene(voxels, affine=affine, segmentation=(distance < 15).astype(numpy.uint8), labels={1: "ball"},
                        modality="ct", focus="ball", view="anterior")
-scene.render((256, 256), samples=4).save("python.png")
+scene.render((256, 256), samples=32).save("python.png")
 fenestra.Scene("cube/cube.mrb").render((64, 64), samples=4).save("cube.png")
 END
 mount --bind /proc "$root/proc"

@@ -135,6 +135,37 @@ TEST(LabelSearch, ALostHeaderGivesAWarning) {
   EXPECT_TRUE(warn(readSegmentation(lost).grid()).empty()) << "the volume is there, too";
 }
 
+/// A label map of the volume's size belongs to the volume, whatever the order of its axes.
+TEST(LabelSearch, AnotherPositionGivesAWarning) {
+  const Affine map(Mat3::Diagonal({2.0, 2.0, 3.0}), {-70.0, -80.0, 5.0});
+  const Grid volume({4, 4, 2}, map);
+  const auto countWarnings = [&](const Affine& labels, const Size3& size) {
+    return checkPosition("labels", Grid(size, labels), volume).size();
+  };
+  EXPECT_EQ(countWarnings(map, {4, 4, 2}), 0u);
+  EXPECT_EQ(
+      countWarnings(Affine(Mat3::Diagonal({-2.0, -2.0, 3.0}), {-64.0, -74.0, 5.0}), {4, 4, 2}), 0u);
+  EXPECT_EQ(countWarnings(Affine(map.linear(), {-71.0, -80.0, 5.0}), {4, 4, 2}), 1u);
+  EXPECT_EQ(countWarnings(Affine(Mat3::Diagonal({2.0, 2.0, 2.0}), map.translation()), {4, 4, 2}),
+            1u);
+  EXPECT_EQ(countWarnings(Affine(map.linear(), {-71.0, -80.0, 5.0}), {4, 3, 2}), 0u);
+}
+
+TEST(LabelSearch, ATableThatContradictsTheFilesOwnNamesGivesAWarning) {
+  const TemporaryFolder folder;
+  NiftiFile file;
+  file.sformCode = 1;
+  file.samples[3] = 5;
+  const auto map = folder.write("map.nii", file.bytes());
+  const auto findWarnings = [&](const std::string& name) {
+    folder.write("map.json", R"({"5": ")" + name + "\"}");
+    return readSegmentation(map, nullptr, "totalsegmentator2").warnings();
+  };
+  EXPECT_TRUE(findWarnings("Liver").empty());
+  ASSERT_EQ(findWarnings("spleen").size(), 1u);
+  expectMessage(findWarnings("spleen")[0], "unmatched-labels | spleen | liver");
+}
+
 /// As programs write that give each structure a file.
 TEST(LabelSearch, AMaskIsCalledAsItsFile) {
   const TemporaryFolder folder;

@@ -177,6 +177,11 @@ TEST(LibrarySegmentation, MasksAndLabelsGiveEqualImages) {
             copy(render(Scene(ball.volume, ball.segments, makeOptions()), makeSmall()).rgba()));
 }
 
+TEST(LibrarySegmentation, ReadsTablesOfNames) {
+  EXPECT_EQ(readLabelNames("totalsegmentator2").at(5), "liver");
+  EXPECT_EQ(findCode([] { readLabelNames("no such table.json"); }), "missing-file");
+}
+
 TEST(LibrarySegmentation, NamesItsSegments) {
   const Ball ball;
   ASSERT_EQ(ball.segments.segments().size(), 1U);
@@ -248,6 +253,43 @@ TEST(LibraryScene, PresetSuppliesOptionsWithoutValue) {
     "clip-softness": 1.5, "transfer": "ct-skin"})");
   EXPECT_EQ(copy(render(scene.withOptions(preset), makeSmall()).rgba()),
             copy(render({ball.volume, ball.segments, written}, makeSmall()).rgba()));
+}
+
+TEST(LibraryScene, FilesFailBeforeTheRender) {
+  const core::TemporaryFolder folder;
+  const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nspace: right-anterior-superior\n"
+                             "sizes: 4 4 4\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
+                             "space origin: (0,0,0)\nencoding: raw\n";
+  folder.write("volume.nrrd", header + "\n" + std::string(64, 'a'));
+  folder.write("organs.seg.nrrd", header +
+                                      "Segment0_ID:=S\nSegment0_Name:=Liver\n"
+                                      "Segment0_LabelValue:=1\n\n" +
+                                      std::string(64, '\1'));
+  const std::string volume = (folder / "volume.nrrd").string();
+  const std::string organs = (folder / "organs.seg.nrrd").string();
+  const auto findSceneCode = [&](const std::string& path, const char* focus) {
+    SceneOptions options;
+    options.focus = {focus};
+    return findCode([&] { readScene(path, organs, {}, options); });
+  };
+  EXPECT_EQ(findSceneCode(volume, "Liver"), "no error");
+  EXPECT_EQ(findSceneCode(volume, "Kidney"), "unknown-name");
+  EXPECT_EQ(findSceneCode(volume + "x", "Liver"), "missing-file");
+  ASSERT_EQ(readScene(volume, organs).segments().size(), 1u);
+  EXPECT_EQ(readScene(volume, organs).segments().front().name, "Liver");
+  EXPECT_TRUE(readScene(volume).segments().empty());
+}
+
+TEST(LibraryScene, SegmentsAtAnotherPlaceGiveAWarning) {
+  const Ball ball;
+  const auto count = [&](double shift) {
+    Affine map = millimeters;
+    map[2][3] += shift;
+    const Segmentation segments(pack(ball.labels, SampleType::uint8), map, {{3, "ball"}});
+    return Scene(ball.volume, segments, makeOptions()).withOptions(makeOptions()).warnings().size();
+  };
+  EXPECT_EQ(count(0.0), 0u);
+  EXPECT_EQ(count(4.0), 1u);
 }
 
 TEST(LibraryScene, AutomaticPresetSuitsTheNamesOfSegments) {

@@ -89,6 +89,34 @@ FoundNames readSiblingNames(const std::filesystem::path& path,
   return found;
 }
 
+/// The names in the file itself, else those beside it.
+FoundNames findOwnNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
+                        const std::string& extensions) {
+  if (auto inFile = parseLabelNamesXml(extensions, path.string()))
+    return {*inFile, path.string()};
+  return readSiblingNames(path, values);
+}
+
+/// Warning if the label map's own names differ from those of the built-in table `requested` by more
+/// than the order and the separation of words.
+std::vector<Message> findContradiction(const std::filesystem::path& path, const FoundNames& own,
+                                       const std::string& requested, const LabelNames& names) {
+  const auto listWords = [](const std::string& name) {
+    std::vector<std::string> words = splitName(name);
+    std::ranges::sort(words);
+    return words;
+  };
+  for (const auto& [value, ownName] : own.names)
+    if (const auto other = names.find(value);
+        other != names.end() && listWords(ownName.name) != listWords(other->second.name))
+      return {
+          makeMessage(ErrorCode::unmatchedLabels, path, "the label table ", sanitize(requested),
+                      " calls the value ", value, " ", other->second.name, ", but ",
+                      sanitize(own.source), " calls it ", sanitize(ownName.name),
+                      "; if the table belongs to another label map, segments have wrong names")};
+  return {};
+}
+
 } // namespace
 
 std::filesystem::path stripExtensions(const std::filesystem::path& path) {
@@ -100,12 +128,10 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
                           const std::string& extensions,
                           const std::optional<std::string>& requested) {
   if (!requested) {
-    if (auto inFile = parseLabelNamesXml(extensions, path.string()))
-      return {*inFile, path.string()};
-    FoundNames beside = readSiblingNames(path, values);
-    if (beside.names.empty() && values.size() == 1) // a mask, as of a structure per file
-      beside.names[*values.begin()].name = stripExtensions(path).filename();
-    return beside;
+    FoundNames own = findOwnNames(path, values, extensions);
+    if (own.names.empty() && values.size() == 1) // a mask, as of a structure per file
+      own.names[*values.begin()].name = stripExtensions(path).filename();
+    return own;
   }
   constexpr std::size_t maxListed = 8;
   FoundNames found = readRequestedNames(path, extensions, *requested);
@@ -122,6 +148,10 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
         makeMessage(ErrorCode::unmatchedLabels, path, "the label table ", sanitize(*requested),
                     " does not name all label values (not ", list,
                     "); if it belongs to another label map, segments have wrong names"));
+  if (findBuiltInLabelNames(*requested))
+    for (Message& warning :
+         findContradiction(path, findOwnNames(path, values, extensions), *requested, found.names))
+      found.warnings.push_back(std::move(warning));
   return found;
 }
 

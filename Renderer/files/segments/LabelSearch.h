@@ -23,7 +23,8 @@ std::filesystem::path stripExtensions(const std::filesystem::path& path);
 /// header `extensions`. If nothing is requested, uses that label table, else a table with the label
 /// map's stem that names all values, else a seg_labels.json that names exactly these values. A
 /// single value without a name is called as the file. A table beside the label map that does not
-/// match gives a warning. Throws Error (input, request) if the requested table does not exist or
+/// match gives a warning, and so does a built-in table that contradicts the names in or beside the
+/// label map. Throws Error (input, request) if the requested table does not exist or
 /// names none of the values.
 FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
                           const std::string& extensions,

@@ -36,6 +36,15 @@ Error makeUnknownError(const std::string& source, const std::string& selector,
   std::vector<SegmentInfo> suggested;
   std::ranges::copy_if(segments, std::back_inserter(suggested),
                        [&](const SegmentInfo& one) { return isLikelyMatch(selector, one.name); });
+  if (suggested.empty()) {
+    std::vector<std::string> names;
+    for (const SegmentInfo& segment : segments)
+      names.push_back(toLower(segment.name));
+    const std::string nearest = findNearest(toLower(selector), names);
+    std::ranges::copy_if(segments, std::back_inserter(suggested), [&](const SegmentInfo& one) {
+      return !nearest.empty() && toLower(one.name) == nearest;
+    });
+  }
   if (!suggested.empty())
     return makeError(
         ErrorCode::unknownName,
@@ -66,7 +75,8 @@ std::string formatSegments(const std::vector<SegmentInfo>& segments) {
   return join(segments, ", ", format, maxListed);
 }
 
-std::size_t Segmentation::find(const std::string& selector) const {
+std::size_t findSegment(const std::vector<SegmentInfo>& segments, const std::string& selector,
+                        const std::string& source) {
   const auto value = parseNumber<std::int32_t>(selector);
   const std::array<std::function<bool(const SegmentInfo&)>, 3> matchers = {
       [&](const SegmentInfo& segment) { return segment.id == selector; },
@@ -74,17 +84,16 @@ std::size_t Segmentation::find(const std::string& selector) const {
       [&](const SegmentInfo& segment) { return segment.labelValue == value; }};
   for (const auto& matches : matchers) {
     std::vector<SegmentInfo> found;
-    std::ranges::copy_if(m_segments, std::back_inserter(found), matches);
+    std::ranges::copy_if(segments, std::back_inserter(found), matches);
     if (found.size() > 1)
-      throw inputError(ErrorCode::ambiguousName, m_source, "segment \"", sanitize(selector),
+      throw inputError(ErrorCode::ambiguousName, source, "segment \"", sanitize(selector),
                        "\" matches several: ", formatSegments(found), "; choose one by its id");
     if (!found.empty())
-      return static_cast<std::size_t>(std::ranges::find_if(m_segments, matches) -
-                                      m_segments.begin());
+      return static_cast<std::size_t>(std::ranges::find_if(segments, matches) - segments.begin());
   }
   if (const std::string_view bare = trim(selector); bare.size() < selector.size())
-    return find(std::string(bare));
-  throw makeUnknownError(m_source, selector, m_segments);
+    return findSegment(segments, std::string(bare), source);
+  throw makeUnknownError(source, selector, segments);
 }
 
 } // namespace fenestra::core

@@ -207,22 +207,27 @@ std::vector<SegmentInfo> readSegments(const Fields& fields, const std::string& s
   return segments;
 }
 
-/// Warning about a label map that has as many voxels as the volume, but the position of an array: a
-/// tool has lost its header.
-std::vector<Message> findLostHeader(const std::string& source, const Grid& grid,
-                                    const Grid* volume) {
+/// True if the grid has spacing 1 and origin 0, the position of an array.
+bool hasArrayPosition(const Grid& grid) {
   constexpr double tolerance = 1e-6; // mm
   const Affine& map = grid.indexToWorld;
-  if (!volume || grid.size != volume->size || map.translation().norm() > tolerance ||
-      (grid.worldCorner(7) - volume->worldCorner(7)).norm() < 0.5)
-    return {};
+  bool isUnit = map.translation().norm() <= tolerance;
   for (int axis = 0; axis < 3; ++axis)
-    if (std::abs(std::abs(map.linear()(axis, axis)) - 1.0) > tolerance ||
-        std::abs(map.linear().col(axis).norm() - 1.0) > tolerance)
-      return {};
-  return {makeMessage(ErrorCode::assumedGeometry, source,
-                      "has the size of the volume, but spacing 1 and origin 0, as after the loss "
-                      "of its header; segments are shown where it says")};
+    isUnit = isUnit && std::abs(std::abs(map.linear()(axis, axis)) - 1.0) <= tolerance &&
+             std::abs(map.linear().col(axis).norm() - 1.0) <= tolerance;
+  return isUnit;
+}
+
+/// Box of the centers of the outermost voxels, mm.
+Box findCenterBounds(const Grid& grid) {
+  Box bounds = Box::makeEmpty();
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto last = [&](int axis) {
+      return (corner >> axis & 1) != 0 ? static_cast<double>(grid.size[axis] - 1) : 0.0;
+    };
+    bounds.extend(grid.indexToWorld * Vec3(last(0), last(1), last(2)));
+  }
+  return bounds;
 }
 
 } // namespace
@@ -240,6 +245,19 @@ void SegmentInfo::parseTerminology(std::string_view tags) {
     if (const std::size_t meaning = place < parts.size() ? parts[place].rfind('^') : 0;
         meaning != std::string::npos && meaning > 1)
       *code = parts[place].substr(0, meaning);
+}
+
+std::vector<Message> checkPosition(const std::string& source, const Grid& labels,
+                                   const Grid& volume) {
+  const Box own = findCenterBounds(labels), other = findCenterBounds(volume);
+  const double apart = std::max((own.lower - other.lower).norm(), (own.upper - other.upper).norm());
+  if (labels.size != volume.size || apart < 0.5) // mm
+    return {};
+  return {makeMessage(ErrorCode::assumedGeometry, source, "has the size of the volume, but ",
+                      hasArrayPosition(labels)
+                          ? "spacing 1 and origin 0, as after the loss of its header"
+                          : concat("lies up to ", toString(apart, 3), " mm apart from it"),
+                      "; segments are shown where it says")};
 }
 
 Segmentation::Labels interleaveLayers(Segmentation::Labels layers, std::size_t count) {
@@ -335,7 +353,8 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
   segmentation.setNamesSource(std::move(found.source));
   segmentation.addWarnings(image.warnings);
   segmentation.addWarnings(found.warnings);
-  segmentation.addWarnings(findLostHeader(source, segmentation.grid(), reference));
+  if (reference)
+    segmentation.addWarnings(checkPosition(source, segmentation.grid(), *reference));
   return segmentation;
 }
 

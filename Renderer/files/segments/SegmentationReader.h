@@ -34,6 +34,11 @@ struct SegmentInfo {
 /// True if `selector`, without blanks around, is the segment's id, name or label value.
 bool isSelected(const SegmentInfo& segment, std::string_view selector);
 
+/// Index of the segment whose id, else name, else label value is `selector`. Throws Error (input),
+/// which names `source`, if none or several match.
+std::size_t findSegment(const std::vector<SegmentInfo>& segments, const std::string& selector,
+                        const std::string& source);
+
 /// Lists ids and names for a message, at most 12.
 std::string formatSegments(const std::vector<SegmentInfo>& segments);
 
@@ -101,9 +106,10 @@ public:
   /// Removes a segment's voxels that a binary mask on its label map's lattice does not contain.
   void restrictSegment(const SegmentInfo& segment, const Mask& mask);
 
-  /// Index in segments() of the segment whose id, else name, else label value is `selector`. Throws
-  /// Error (input) if none or several match.
-  std::size_t find(const std::string& selector) const;
+  /// findSegment() of segments().
+  std::size_t find(const std::string& selector) const {
+    return findSegment(m_segments, selector, m_source);
+  }
 
   /// Union of the selected segments. Throws Error (input) as find and makeMask do, and if `shaping`
   /// leaves no voxel.
@@ -152,6 +158,12 @@ Segmentation makeLabelMap(const std::string& source, const Grid& grid, const Sam
 /// Throws Error (input).
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference = nullptr,
                               const std::optional<std::string>& labels = {});
+
+/// Warning about a label map that has as many voxels as the volume, but another position or
+/// spacing: its header was lost, or belongs to another scan. `source`: of the labels, for the
+/// message.
+std::vector<Message> checkPosition(const std::string& source, const Grid& labels,
+                                   const Grid& volume);
 
 /// Reads only the segments; reads labels only if needed to match names to values. Empty: the values
 /// have no names. Throws Error (input).

@@ -20,7 +20,7 @@ struct Background {
 /// A render stops at the first of the limits.
 struct RenderOptions {
   int width = 512, height = 512;
-  /// Limit of the mean number per pixel; by default 64, without another limit none.
+  /// Limit of the mean number per pixel; by default 64 if there is no other limit, else none.
   std::optional<std::uint64_t> samples = {};
   std::optional<double> seconds = {}; ///< limit of the time
   std::optional<double> noise = {};   ///< limit of the noise, of the denoised image if there is one

@@ -117,6 +117,8 @@ public:
   /// The scene with other options.
   Scene withOptions(const SceneOptions& options) const;
   const SceneOptions& options() const;
+  /// Segments among which a focus can be chosen; empty without a segmentation. Throws Error.
+  std::vector<Segment> segments() const;
 
   // The following prepare the scene for an image of a size, in pixels, unless it was prepared for
   // it last. All throw Error.
@@ -136,8 +138,9 @@ private:
   std::shared_ptr<Data> m_data;
 };
 
-/// Scene of files: a volume, a DICOM folder or a Slicer scene (.mrml, .mrb). `segmentation`: a
-/// file, or a segmentation of the scene by name or id, by default the scene's; `labels` as in
+/// Scene of files, of which the names of the segments are read now, the rest on first use: a
+/// volume, a DICOM folder or a Slicer scene (.mrml, .mrb). `segmentation`: a file, or a
+/// segmentation of the scene by name or id, by default the scene's; `labels` as in
 /// readSegmentation(). Throws Error.
 FENESTRA_EXPORT Scene readScene(const std::string& path,
                                 const std::optional<std::string>& segmentation = {},

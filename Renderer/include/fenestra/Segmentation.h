@@ -42,6 +42,10 @@ private:
   std::shared_ptr<const Data> m_data;
 };
 
+/// Names by label value of a table: a file, or totalsegmentator1, totalsegmentator2 or freesurfer.
+/// Throws Error.
+FENESTRA_EXPORT std::map<std::int32_t, std::string> readLabelNames(const std::string& table);
+
 /// Reads a .seg.nrrd, a label map, a folder of masks, DICOM SEG or RTSTRUCT. `labels`: a table of
 /// names for label values: a file, or totalsegmentator, totalsegmentator1, totalsegmentator2 or
 /// freesurfer; by default names in or beside the file. `volume`: of the scan, whose grid closed

@@ -10,8 +10,14 @@ World coordinates are RAS, millimeters, as in nibabel; array[i, j, k] is the sam
 
 import atexit
 import os
+import sys
+from pathlib import Path
 
-from . import _fenestra
+try:
+    from . import _fenestra
+except ImportError as error:
+    _built = ", ".join(path.name for path in Path(__file__).parent.glob("_fenestra.*.so")) or "nothing"
+    raise ImportError(f"{error}; this is Python {sys.version.split()[0]}, and the package has {_built}") from error
 from ._batch import BatchRow, batch
 from ._fenestra import ClipSurface, Error, Image
 from ._inputs import FenestraWarning

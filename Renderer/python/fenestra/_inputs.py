@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import importlib
+import json
 import os
 import sys
+import tempfile
 import warnings
 from typing import Any, Dict, Mapping, NamedTuple, Optional
 
@@ -119,17 +121,34 @@ def to_volume(image: Any, affine: Any, reading: Dict[str, Any], description: Dic
     return _fenestra.Volume(grid.array, grid.affine, description)
 
 
-def to_table(labels: Any) -> Optional[bytes]:
-    """`labels` of a file."""
-    if labels is not None and not is_path(labels):
-        raise TypeError("labels: of a file are a path or the name of a table, not " + type(labels).__name__)
-    return None if labels is None else os.fsencode(labels)
+def to_names(labels: Any) -> Dict[int, str]:
+    """Names by label value, of a dict or of a table."""
+    if labels is None:
+        return {}
+    if is_path(labels):
+        return _fenestra.read_label_names(os.fsencode(labels))
+    if not isinstance(labels, Mapping):
+        raise TypeError("labels: is no dict, no path and no name of a table, but " + type(labels).__name__)
+    try:
+        return {int(value): str(name) for value, name in labels.items()}
+    except (TypeError, ValueError):
+        raise ValueError("labels: its keys must be label values, as in {5: 'liver'}") from None
+
+
+def read_segmentation(path: Any, labels: Any, volume: _fenestra.Volume) -> _fenestra.Segmentation:
+    """A dict of names becomes a table in a temporary file, as the library reads it."""
+    if labels is None or is_path(labels):
+        return _fenestra.read_segmentation(os.fsencode(path), None if labels is None else os.fsencode(labels), volume)
+    with tempfile.NamedTemporaryFile("w", suffix=".json") as file:
+        json.dump(to_names(labels), file)
+        file.flush()
+        return _fenestra.read_segmentation(os.fsencode(path), os.fsencode(file.name), volume)
 
 
 def to_segmentation(value: Any, labels: Any, volume: _fenestra.Volume) -> _fenestra.Segmentation:
     """`labels`: names by label value, or as fenestra.Scene takes them for a file."""
     if is_path(value):
-        return _fenestra.read_segmentation(os.fsencode(value), to_table(labels), volume)
+        return read_segmentation(value, labels, volume)
     if isinstance(value, Mapping):
         masks = {str(name): _segment_grid(mask, f"segmentation[{name!r}]", volume) for name, mask in value.items()}
         if not masks:
@@ -139,10 +158,8 @@ def to_segmentation(value: Any, labels: Any, volume: _fenestra.Volume) -> _fenes
             if mask.array.shape != first.array.shape or not numpy.allclose(mask.affine, first.affine, 0, 1e-6):
                 raise ValueError(f"segmentation[{name!r}]: has another grid than segmentation[{first_name!r}]")
         return _fenestra.Segmentation([(name, mask.array) for name, mask in masks.items()], first.affine)
-    if labels is not None and not isinstance(labels, Mapping):
-        raise TypeError("labels: a segmentation in memory needs a dict of names by label value")
     grid = _segment_grid(value, "segmentation", volume)
-    return _fenestra.Segmentation(grid.array, grid.affine, {int(value): str(name) for value, name in (labels or {}).items()})
+    return _fenestra.Segmentation(grid.array, grid.affine, to_names(labels))
 
 
 def _segment_grid(image: Any, argument: str, volume: _fenestra.Volume) -> Grid:

@@ -6,7 +6,7 @@ import contextlib
 import importlib
 import sys
 import warnings
-from typing import Callable, Iterator, Optional, Union
+from typing import Any, Callable, Iterator, Optional, Union
 
 Progress = Union[None, bool, Callable[[float, float, float], object]]
 Callback = Callable[[float, float, float], object]
@@ -35,11 +35,20 @@ def callback(progress: Progress) -> Iterator[Optional[Callback]]:
     if not tqdm:
         yield None
         return
-    with tqdm(total=100, desc="render", unit="%", bar_format="{desc}: {percentage:3.0f}%|{bar}| {elapsed}{postfix}") as bar:
+    with contextlib.ExitStack() as bars:
+        bar: Any = None
 
         def update(fraction: float, seconds: float, noise: float) -> None:
+            nonlocal bar
+            if not bar:  # not before the arguments were accepted
+                bar = bars.enter_context(
+                    tqdm(total=100, desc="prepare", bar_format="{desc}: {percentage:3.0f}%|{bar}| {elapsed}{postfix}")
+                )
+            if fraction > 0.0:
+                bar.set_description_str("render", refresh=False)
             if noise < float("inf"):
                 bar.set_postfix_str(f"noise {noise:.2g}", refresh=False)
             bar.update(100.0 * fraction - bar.n)
+            bar.refresh()  # the time, also while nothing else changes
 
         yield update

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, Iterator, List, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Mapping, Optional, Tuple
 
 import numpy
 
@@ -21,8 +21,9 @@ class Scene:
     affine: 4x4 matrix from (i, j, k, 1) to RAS mm, of an array
     segmentation: path; label map (0: background) as `input`; or masks by name, {"liver": mask}. An array without affine
         has the grid of the volume. Of a Slicer scene also a segmentation by name or id
-    labels: names by label value, {1: "liver"}; for a path, a table: a file, or totalsegmentator,
-        totalsegmentator1, totalsegmentator2 or freesurfer. By default names in or beside the file
+    labels: names by label value, {1: "liver"}; or a table: a file, totalsegmentator1, totalsegmentator2 or freesurfer.
+        By default names in or beside the file of the segmentation. Versions 1 and 2 of TotalSegmentator number organs
+        differently: of the wrong one, another organ is shown
     name, modality ("ct", "mr", "ultrasound" or "pet"), contrast_agent: description of a volume in memory. Samples of CT
         are Hounsfield units
     volume: of several in a file, a node of a scene by name or id, or a series of a folder by number
@@ -36,13 +37,22 @@ class Scene:
         focus and other options that are None
     focus: segments to show unobstructed: one, or a list, of names or label values
     margin: grows the focus: one number, or one per segment
+    view: "anterior", "posterior", "left", "right", "superior", "inferior", or "auto": shows most of the focus
+    projection: "orthographic" or "perspective"
+    clip: "auto", "none", "plane", "cutaway", "surface", "hole" or "ghost"
+    clip_boundary: "exact" or "spline"
+    hole: "box", "cylinder" or "sphere"
     plane: ((x, y, z), (nx, ny, nz)), a point and a normal
+    gradient: "sobel" or "central"
+    table: of the scanner, "auto", "keep" or "remove"
+    materials: "none", "library", "contrast" or a path
     volume_smoothing: "auto", "off", or the standard deviation of the noise
     transfer, lights: a name, a path, JSON, or a dict that is written as JSON
     environment: a gray, (r, g, b), or the path of an .exr image
 
     Raises fenestra.Error, or ValueError and TypeError, which name the argument. Warnings are of the category
-    fenestra.FenestraWarning. What takes long is computed on first use.
+    fenestra.FenestraWarning. What takes long is computed on first use, and so files are read; names of segments are
+    checked now.
     """
 
     def __init__(
@@ -106,10 +116,13 @@ class Scene:
                 raise ValueError(f"{key}: is for {'an input in memory' if is_file else 'files'}")
         if is_file and affine is not None:
             raise ValueError("affine: is for an array")
-        if is_file and (segmentation is None or _inputs.is_path(segmentation)):
+        self._name = os.fspath(input) if is_file else name or type(input).__name__
+        if segmentation is None and isinstance(labels, Mapping):
+            raise ValueError("labels: are for a segmentation, which is missing")
+        if is_file and not isinstance(labels, Mapping) and (segmentation is None or _inputs.is_path(segmentation)):
             segments_path = None if segmentation is None else os.fsencode(segmentation)
             self._scene = _fenestra.read_scene(
-                os.fsencode(input), segments_path, _inputs.to_table(labels), keywords, reading
+                os.fsencode(input), segments_path, None if labels is None else os.fsencode(labels), keywords, reading
             )
             return
         body = _inputs.to_volume(input, affine, reading, description)
@@ -124,6 +137,7 @@ class Scene:
         changed._options = {**self._options, **options}
         changed._scene = self._scene.with_options(changed._options)
         changed._warned = self._warned
+        changed._name = self._name
         return changed
 
     def render(
@@ -190,6 +204,15 @@ class Scene:
             yield image
             if not image.complete:
                 return
+
+    @property
+    def segments(self) -> Dict[int, str]:
+        """Names of the segments by label value: what `focus` chooses from. Raises fenestra.Error."""
+        return dict(self._scene.segments())
+
+    def __repr__(self) -> str:
+        given = ", ".join(f"{key}={value!r}" for key, value in self._options.items() if value is not None)
+        return f"<fenestra.Scene {self._name}{': ' if given else ''}{given}>"
 
     def camera(self, size: Tuple[int, int] = (512, 512)) -> Dict[str, Any]:
         """Camera of an image of this size, as keywords of replace(): projection; position, target and up in RAS mm; scale

@@ -166,7 +166,9 @@ def test_arrays_are_not_copied_by_numpy(itk_class):
         (ValueError, "segmentation", {"segmentation": {"liver": numpy.zeros((3, 3, 3), bool)}}),
         (TypeError, "segmentation", {"segmentation": {"liver": numpy.zeros((20, 24, 28), complex)}}),
         (fenestra.Error, "segmentation", {"segmentation": numpy.full((20, 24, 28), 0.5)}),
-        (TypeError, "labels", {"labels": "totalsegmentator"}),
+        (TypeError, "labels", {"labels": 3}),
+        (fenestra.Error, "totalsegmentator", {"labels": "totalsegmentator"}),
+        (ValueError, "labels", {"labels": {"liver": 1}}),
         (ValueError, "volume", {"volume": "1"}),
         (ValueError, "modality", {"modality": "CT"}),
         (TypeError, "view", {"view": 3}),
@@ -187,6 +189,24 @@ def test_errors_name_the_argument(subject, error, argument, keywords):
     }
     with pytest.raises(error, match=argument):
         fenestra.Scene(values.pop("input"), **{**OPTIONS, **values}).camera()
+
+
+def test_names_of_labels(files, subject, reference):
+    for labels in (subject.names, files.names):  # a dict or a table, of a file or of an array
+        for segmentation in (files.labels, subject.labels):
+            scene = fenestra.Scene(files.volume, segmentation=segmentation, labels=labels, **OPTIONS)
+            assert scene.segments == subject.names
+            expect_equal(scene.render(**FEW), reference)
+    with pytest.raises(ValueError, match="^labels: .*5: 'liver'"):
+        fenestra.Scene(files.volume, segmentation=files.labels, labels={"liver": 1})
+    assert "focus=['liver']" in repr(scene) and "ct.nii" in repr(scene)
+
+
+def test_segments_at_another_place_give_a_warning(subject):
+    with pytest.warns(fenestra.FenestraWarning, match="position|apart"):
+        fenestra.Scene(
+            subject.array, affine=subject.affine, segmentation=(subject.labels, numpy.eye(4)), labels=subject.names, **OPTIONS
+        ).render(**FEW)
 
 
 def test_errors_of_files(files):
