@@ -1,5 +1,5 @@
 #pragma once
-// A pixel's sums as 64-bit words, for checkpoint files and for messages between processes.
+// A pixel's sums as 64-bit words, for checkpoint files.
 
 #include "image/Film.h"
 

@@ -39,15 +39,13 @@ void requireLimit(const char* what, const std::optional<double>& value) {
     throw core::requestError(core::ErrorCode::invalidValue, what, "must be greater than 0");
 }
 
-core::RenderSettings makeSettings(const RenderOptions& options, const core::PreparedScene& scene,
-                                  core::ImageDenoiser& denoiser) {
+core::RenderSettings makeSettings(const RenderOptions& options, const core::PreparedScene& scene) {
   constexpr std::uint64_t unlimited = std::uint64_t{1} << 40, usual = 64;
   core::RenderSettings settings;
   settings.samples = options.samples.value_or(options.seconds || options.noise ? unlimited : usual);
   settings.seconds = options.seconds.value_or(settings.seconds);
   settings.noise = options.noise.value_or(settings.noise);
-  if (options.noise && options.isDenoised)
-    denoiser.limitDisplayNoise(settings);
+  settings.isDisplayNoise = options.isDenoised;
   settings.seed = options.seed;
   settings.threads = options.threads;
   settings.path.wantNormals = true;
@@ -94,7 +92,8 @@ private:
     const core::PreparedScene scene =
         m_scene->prepare(m_options.width, m_options.height, m_options.isDenoised, m_monitor.stop);
     core::ImageDenoiser denoiser(scene);
-    m_settings = makeSettings(m_options, scene, denoiser);
+    denoiser.attach(m_monitor);
+    m_settings = makeSettings(m_options, scene);
     m_preparingSeconds = m_watch.seconds();
     m_isRendering = true; // publishes the two members above
     m_monitor.isNoiseWanted = true;

@@ -243,14 +243,19 @@ std::optional<RenderResult> Checkpoint::load(const PreparedScene& scene,
 void Checkpoint::attach(RenderMonitor& monitor) {
   if (m_isMerge)
     return;
-  m_watch = Stopwatch();
-  monitor.isCheckpointDue = [this] { return m_watch.seconds() >= m_dueTime; };
-  monitor.onCheckpoint = [this](const RenderResult& result) { trySave(result); };
+  using Clock = RenderMonitor::Clock;
+  monitor.pauseAt = Clock::now() + std::chrono::seconds(1);
+  monitor.onPause = [this, &monitor](const RenderResult& result) {
+    const Clock::time_point start = Clock::now();
+    if (start < monitor.pauseAt.load())
+      return;
+    trySave(result);
+    const Clock::time_point end = Clock::now();
+    monitor.pauseAt = end + std::min<Clock::duration>(100 * (end - start), std::chrono::minutes(1));
+  };
 }
 
 void Checkpoint::trySave(const RenderResult& result) {
-  constexpr double fraction = 0.01, longest = 60.0; // of the total time; seconds
-  const Stopwatch cost;
   std::string failure;
   try {
     save(result);
@@ -261,7 +266,6 @@ void Checkpoint::trySave(const RenderResult& result) {
   }
   if (!failure.empty() && !std::exchange(m_hasWarned, true))
     m_warn(failure + " (the render continues without this checkpoint)");
-  m_dueTime = m_watch.seconds() + std::min(cost.seconds() / fraction, longest);
 }
 
 void Checkpoint::save(const RenderResult& result) {

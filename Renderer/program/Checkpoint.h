@@ -3,7 +3,6 @@
 // is bit for bit that of an uninterrupted render. A mismatch of settings, inputs, version or
 // instruction set is an error. `merge` reads the shards of an image through the same class.
 
-#include "base/Stopwatch.h"
 #include "io/Outputs.h"
 #include "io/platform/Locks.h"
 #include "program/RenderSteps.h"
@@ -53,8 +52,8 @@ public:
   /// differ, or the file has more samples than requested; input if it is damaged.
   std::optional<RenderResult> load(const PreparedScene& scene, const RenderSettings& settings);
 
-  /// Saves during the render: first after a second, then so rarely that writing takes 1 % of the
-  /// time, but at least every minute.
+  /// Saves in pauses of the render: first after a second, then so rarely that writing takes 1 % of
+  /// the time, but at least every minute.
   void attach(RenderMonitor& monitor);
 
   /// As save(), but only the first failure is reported, as a warning. The previous file remains.
@@ -79,8 +78,6 @@ private:
   nlohmann::ordered_json m_provenance;
   Outputs m_outputs;
   std::optional<std::uint64_t> m_savedPaths; ///< in the file on disk
-  Stopwatch m_watch;
-  double m_dueTime = 1.0; ///< seconds by m_watch
   bool m_hasWarned = false;
 };
 

@@ -16,11 +16,11 @@ std::string formatNumber(const char* format, double value) {
 
 } // namespace
 
-Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, int finishedBefore,
-                   int frames)
+Progress::Progress(const RenderOptions& options, const RenderSettings& settings,
+                   RenderMonitor& monitor, int finishedBefore, int frames)
     : m_view(options.progress, "Path tracing"),
-      m_settings(options.settings),
-      m_pixels(1.0 * options.scene.width * options.scene.height / options.settings.shard.count),
+      m_settings(settings),
+      m_pixels(1.0 * options.scene.width * options.scene.height / settings.shard.count),
       m_monitor(monitor),
       m_finishedBefore(finishedBefore),
       m_finished(finishedBefore),

@@ -18,8 +18,8 @@ class Progress {
 public:
   /// For a command that renders `frames` images in sequence, of which earlier runs finished
   /// `finishedBefore`.
-  Progress(const RenderOptions& options, RenderMonitor& monitor, int finishedBefore = 0,
-           int frames = 1);
+  Progress(const RenderOptions& options, const RenderSettings& settings, RenderMonitor& monitor,
+           int finishedBefore = 0, int frames = 1);
 
   /// Counts the image as finished, and resets the monitor for the next one.
   void nextFrame();

@@ -283,9 +283,9 @@ void writeStats(const RenderOptions& options, const PreparedScene& scene,
 
 /// Renders, resuming from the checkpoint if there is one, and saves checkpoints.
 RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene,
-                        const RenderSettings& settings, std::optional<Checkpoint>& checkpoint,
-                        RenderMonitor& monitor, const StartWorkers& startWorkers,
-                        RenderStats& stats) {
+                        std::optional<Checkpoint>& checkpoint, RenderMonitor& monitor,
+                        const ShareRender& share, RenderStats& stats) {
+  RenderSettings settings = makeSettings(options, scene.background());
   std::optional<RenderResult> begun;
   if (checkpoint) {
     begun = checkpoint->load(scene, settings);
@@ -293,10 +293,10 @@ RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene
   }
   if (begun)
     stats.checkpointPaths = begun->counters.paths;
-  if (startWorkers)
-    startWorkers(options, scene, settings, monitor);
+  if (share)
+    share(options, scene, settings, monitor);
   RenderResult result = [&] {
-    const Progress progress(options, monitor);
+    const Progress progress(options, settings, monitor);
     return render(scene.view(), settings, monitor, std::move(begun));
   }();
   if (options.checkpoint && !options.isShard)
@@ -307,8 +307,7 @@ RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene
 } // namespace
 
 int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
-                std::optional<Checkpoint>& checkpoint, Outputs& outputs,
-                const StartWorkers& startWorkers) {
+                std::optional<Checkpoint>& checkpoint, Outputs& outputs, const ShareRender& share) {
   const RenderOptions& options = job.options;
   const Stopwatch total;
   const PreparedScene scene(options.scene, job.input);
@@ -324,8 +323,8 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   Stopwatch watch;
   RenderStats stats;
   ImageDenoiser filter(scene);
-  const RenderResult result = renderFilm(options, scene, makeSettings(options, scene, filter),
-                                         checkpoint, monitor, startWorkers, stats);
+  filter.attach(monitor);
+  const RenderResult result = renderFilm(options, scene, checkpoint, monitor, share, stats);
   stats.transport = watch.seconds();
   surface.get();
   if (options.isShard)
@@ -359,7 +358,7 @@ int renderCommand(int argc, char** argv, int first) {
   return runRender({}, argc, argv, first);
 }
 
-int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first) {
+int runRender(const ShareRender& share, int argc, char** argv, int first) {
   if (std::find(argv + first, argv + argc, std::string_view("--xml")) != argv + argc) {
     allowClosedOutput();
     std::cout << makeSlicerXml(renderSyntax) << std::flush;
@@ -380,7 +379,7 @@ int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first
   Outputs outputs;
   declareOutputs(job.options, outputs);
   checkMemory(job.options.scene);
-  return renderScene(job, {argv + 1, argv + argc}, checkpoint, outputs, startWorkers);
+  return renderScene(job, {argv + 1, argv + argc}, checkpoint, outputs, share);
 }
 
 } // namespace fenestra::core

@@ -7,19 +7,19 @@
 
 namespace fenestra::core {
 
-/// Starts remote workers for a render and registers them in its monitor; empty: no workers. Keeps
-/// MPI out of this library.
-using StartWorkers = std::function<void(const RenderOptions&, const PreparedScene&,
-                                        const RenderSettings&, RenderMonitor&)>;
+/// Makes other processes render other shards of the image, by changes to settings and monitor;
+/// empty: this process alone renders. Keeps MPI out of this library.
+using ShareRender = std::function<void(const RenderOptions&, const PreparedScene&, RenderSettings&,
+                                       RenderMonitor&)>;
 
 /// Builds the scene, renders it (resuming from `checkpoint` if set), writes images, and measures
 /// them for the statistics. For a shard, writes only the checkpoint file. `arguments`: command line
 /// of the process, for the image headers. Returns the exit status.
 int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
                 std::optional<Checkpoint>& checkpoint, Outputs& outputs,
-                const StartWorkers& startWorkers = {});
+                const ShareRender& share = {});
 
-/// The command `render`, with remote workers.
-int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first);
+/// The command `render`, shared with other processes.
+int runRender(const ShareRender& share, int argc, char** argv, int first);
 
 } // namespace fenestra::core

@@ -259,6 +259,7 @@ void requireScale(const RenderOptions& options, Projection projection) {
 RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene) {
   RenderSettings settings = options.settings;
   settings.path.background = options.background.value_or(scene.value_or(Background::makeDark()));
+  settings.isDisplayNoise = options.noiseTarget == NoiseTarget::denoised;
   return settings;
 }
 

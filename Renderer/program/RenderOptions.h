@@ -98,7 +98,8 @@ RenderOptions makeRenderOptions(const OptionValues& values);
 void requireScale(const RenderOptions& options, Projection projection);
 
 /// options.settings with a background: the option's, else `scene` (from a Slicer scene; nullopt for
-/// other inputs), else Background::standard.
+/// other inputs), else Background::standard. A limit of the denoised noise needs
+/// ImageDenoiser::attach.
 RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene);
 
 } // namespace fenestra::core

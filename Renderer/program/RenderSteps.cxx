@@ -92,14 +92,6 @@ void printFacts(const PreparedScene& scene) {
     printLine(fact);
 }
 
-RenderSettings makeSettings(const RenderOptions& options, const PreparedScene& scene,
-                            ImageDenoiser& denoiser) {
-  RenderSettings settings = makeSettings(options, scene.background());
-  if (options.noiseTarget == NoiseTarget::denoised)
-    denoiser.limitDisplayNoise(settings);
-  return settings;
-}
-
 void writeImages(const RenderOptions& options, const PreparedScene& scene,
                  const RenderResult& result, const std::optional<FilteredImage>& filtered,
                  const std::vector<std::string>& arguments, Outputs& outputs) {

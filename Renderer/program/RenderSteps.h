@@ -23,10 +23,6 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs);
 /// Prints what was chosen for the scene (PreparedScene::choices), one fact per line.
 void printFacts(const PreparedScene& scene);
 
-/// makeSettings(), with the noise that `denoiser` estimates as the limit if that is the target.
-RenderSettings makeSettings(const RenderOptions& options, const PreparedScene& scene,
-                            ImageDenoiser& denoiser);
-
 /// Writes all of options.outputs; the caller commits them. Headers store what reproduces the image,
 /// including the command `fenestra arguments…`, and how it was denoised. Throws Error (output).
 void writeImages(const RenderOptions& options, const PreparedScene& scene,

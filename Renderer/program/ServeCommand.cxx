@@ -83,13 +83,15 @@ private:
     m_published.reset();
     m_failure.clear();
     ImageDenoiser filter(*m_scene);
-    m_monitor.onPassEnd = [this, &filter](const RenderResult& result) {
+    filter.attach(m_monitor);
+    m_monitor.onPause = [this, &filter](const RenderResult& result) {
       const double interval = std::max(0.1, 4.0 * m_publishSeconds);
       if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
         publish(result, filter, false);
     };
-    const RenderResult result =
-        render(m_scene->view(), makeSettings(m_options, *m_scene, filter), m_monitor);
+    RenderSettings settings = makeSettings(m_options, m_scene->background());
+    settings.passGrowth = 1; // short passes, since images are shown between them
+    const RenderResult result = render(m_scene->view(), settings, m_monitor);
     m_isComplete = result.reason != StopReason::request;
     if (m_isComplete)
       publish(result, filter, true);

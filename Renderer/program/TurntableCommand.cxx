@@ -84,7 +84,8 @@ private:
   }
 
   void renderFrames() {
-    Progress progress(m_options.render, m_monitor, m_finishedBefore, frameCount());
+    Progress progress(m_options.render, m_options.render.settings, m_monitor, m_finishedBefore,
+                      frameCount());
     for (int frame = m_options.first(); frame < m_options.end(); ++frame) {
       if (m_manifest.finished().contains(frame))
         continue;
@@ -104,8 +105,9 @@ private:
     RenderOptions options = m_options.render;
     options.outputs = m_options.images(frame);
     ImageDenoiser filter(m_view.scene);
+    filter.attach(m_monitor);
     const RenderResult result =
-        render(m_view.scene.view(), makeSettings(options, m_view.scene, filter), m_monitor);
+        render(m_view.scene.view(), makeSettings(options, m_view.scene.background()), m_monitor);
     if (result.reason == StopReason::request)
       return false;
     writeImages(options, m_view.scene, result, filter.apply(result), m_arguments, m_outputs);

@@ -23,14 +23,14 @@ void forEachBlock(std::uint64_t size, Each&& each) {
 
 } // namespace
 
-void broadcastFiles(const std::vector<fs::path>& files, Ranks& ranks) {
+void broadcastFiles(const std::vector<fs::path>& files, const Ranks& ranks) {
   std::string working = fs::current_path().string(), none;
   ranks.broadcast(working);
   for (const fs::path& file : files) {
     std::string name = fs::absolute(file).lexically_normal().string();
     std::uint64_t size = fs::file_size(file);
     ranks.broadcast(name);
-    ranks.broadcast({reinterpret_cast<char*>(&size), sizeof size});
+    ranks.broadcast(std::span(&size, 1));
     std::ifstream content(file, std::ios::binary);
     forEachBlock(size, [&](std::span<char> block) {
       if (!content.read(block.data(), static_cast<std::streamsize>(block.size())))
@@ -42,13 +42,13 @@ void broadcastFiles(const std::vector<fs::path>& files, Ranks& ranks) {
   ranks.broadcast(none);
 }
 
-ReceivedFiles::ReceivedFiles(Ranks& ranks) {
+ReceivedFiles::ReceivedFiles(const Ranks& ranks) {
   std::string text;
   ranks.broadcast(text);
   m_working = text;
   for (ranks.broadcast(text); !text.empty(); ranks.broadcast(text)) {
     std::uint64_t size = 0;
-    ranks.broadcast({reinterpret_cast<char*>(&size), sizeof size});
+    ranks.broadcast(std::span(&size, 1));
     const fs::path path = m_folder.add(fs::path(text).relative_path());
     std::ofstream file(path, std::ios::binary);
     forEachBlock(size, [&](std::span<char> block) {

@@ -9,21 +9,21 @@
 namespace fenestra::core {
 
 /// Sends files to all other ranks, which construct ReceivedFiles meanwhile. Throws Error (input).
-void broadcastFiles(const std::vector<std::filesystem::path>& files, Ranks& ranks);
+void broadcastFiles(const std::vector<std::filesystem::path>& files, const Ranks& ranks);
 
 /// Copies of rank 0's files in a temporary folder (TMPDIR) of this rank.
 class ReceivedFiles {
 public:
   /// Throws Error (output).
-  explicit ReceivedFiles(Ranks& ranks);
+  explicit ReceivedFiles(const Ranks& ranks);
 
+  /// This rank's copy of a file of rank 0, which need not exist.
+  std::filesystem::path localPath(const std::filesystem::path& remotePath) const;
   /// `options` with rank 0's file names, relative to its working folder, replaced by those of the
   /// copies.
   OptionValues localizePaths(const OptionValues& options, std::span<const Option> known) const;
 
 private:
-  std::filesystem::path localPath(const std::filesystem::path& remotePath) const;
-
   PrivateFolder m_folder;
   std::filesystem::path m_working; ///< rank 0's working folder
 };

@@ -10,13 +10,15 @@
 #include "program/UsageError.h"
 #include "program/about/Version.h"
 #include "ranks/FileBroadcast.h"
-#include "ranks/Scheduler.h"
+#include "ranks/SharedRender.h"
 
 #include <algorithm>
 #include <new>
 
 namespace fenestra::core {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Index of the first argument of a render. Throws Error (usage) for another command.
 int findFirstArgument(int argc, char** argv) {
@@ -52,46 +54,68 @@ std::string describeScene(const PreparedScene& scene, const RenderSettings& sett
       "; ", majorants.size(), " cells, ", majorants.emptyCount(), " of them empty");
 }
 
-/// Makes the other ranks prepare the scene and render tiles of it.
-void startRanks(const RenderOptions& options, const PreparedScene& scene,
-                const RenderSettings& settings, RenderMonitor& monitor, Ranks& ranks,
-                Scheduler& scheduler) {
-  startWorkers(ranks);
+/// Waits until rank 0 wants to render, or ends without. Returns whether it does.
+bool startTogether(const Ranks& ranks, bool isWanted) {
+  std::uint64_t isStarted[] = {isWanted};
+  ranks.minimize(isStarted);
+  return isStarted[0] != 0;
+}
+
+/// Ends all ranks with the message of the current exception.
+[[noreturn]] void abortRanks(const Ranks& ranks) {
   try {
-    broadcastFiles(listInputFiles(scene, options), ranks);
-    std::string smoothing = formatSmoothing(options.scene.smoothing),
-                text = describeScene(scene, settings);
-    ranks.broadcast(smoothing);
-    ranks.broadcast(text);
-  } catch (const Error& error) { // without an abort, the other ranks would wait for more bytes
+    throw;
+  } catch (const Error& error) {
     ranks.abort(composeMessage(error.message()), exitStatus(error.kind()));
+  } catch (const std::bad_alloc&) {
+    ranks.abort("out of memory; use fewer ranks per machine, or a smaller image",
+                exitStatus(ErrorKind::output));
   } catch (const std::exception& error) {
-    ranks.abort(error.what(), exitStatus(ErrorKind::input));
+    ranks.abort(error.what(), exitStatus(ErrorKind::output));
   }
-  scheduler.start(monitor);
+}
+
+/// Rank 0: sends everything from which the other ranks prepare the same render.
+void sendRender(const RenderOptions& options, const PreparedScene& scene,
+                const RenderSettings& settings, const Ranks& ranks) {
+  std::vector<fs::path> files = listInputFiles(scene, options);
+  std::error_code failed;
+  if (options.checkpoint && fs::is_regular_file(*options.checkpoint, failed) &&
+      !fs::is_empty(*options.checkpoint))
+    files.push_back(*options.checkpoint);
+  broadcastFiles(files, ranks);
+  std::string smoothing = formatSmoothing(options.scene.smoothing),
+              text = describeScene(scene, settings);
+  ranks.broadcast(smoothing);
+  ranks.broadcast(text);
 }
 
 /// Rank 0: the complete command.
-int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::string>& targets) {
-  Scheduler scheduler(ranks);
+int runFirstRank(int argc, char** argv, const Ranks& ranks,
+                 const std::vector<std::string>& targets) {
+  bool isStarted = false;
   try {
     requireSameRanks(targets);
-    const auto start = [&](const RenderOptions& options, const PreparedScene& scene,
-                           const RenderSettings& settings, RenderMonitor& monitor) {
-      startRanks(options, scene, settings, monitor, ranks, scheduler);
+    const auto share = [&](const RenderOptions& options, const PreparedScene& scene,
+                           RenderSettings& settings, RenderMonitor& monitor) {
+      isStarted = startTogether(ranks, true);
+      sendRender(options, scene, settings, ranks);
+      shareRender(ranks, Tiles(options.scene.width, options.scene.height), settings, monitor);
     };
-    const int status = runRender(start, argc, argv, findFirstArgument(argc, argv));
-    if (!scheduler.stopWorkers(status == stoppedStatus))
-      ranks.abort("stopped; other ranks do not respond", status);
+    const int status = runRender(share, argc, argv, findFirstArgument(argc, argv));
+    if (!isStarted)
+      startTogether(ranks, false);
     return status;
   } catch (...) {
-    scheduler.stopWorkers(true);
+    if (isStarted) // the other ranks may wait for this one
+      abortRanks(ranks);
+    startTogether(ranks, false);
     throw;
   }
 }
 
-/// Other ranks: tiles of the image that rank 0 renders from the same arguments.
-void runOtherRank(int argc, char** argv, Ranks& ranks) {
+/// Other ranks: their part of the image that rank 0 renders from the same arguments.
+void runOtherRank(int argc, char** argv, const Ranks& ranks) {
   const std::optional<OptionValues> given =
       parseCommandLine(renderSyntax, argc, argv, findFirstArgument(argc, argv));
   configureMachine(*given);
@@ -105,38 +129,41 @@ void runOtherRank(int argc, char** argv, Ranks& ranks) {
   request.smoothing = parseSmoothing(smoothing); // may be that of rank 0's checkpoint
   checkMemory(request);
   const PreparedScene scene(request, job.input);
+  std::optional<RenderResult> begun;
+  if (const auto& name = job.options.checkpoint; name && fs::exists(files->localPath(*name))) {
+    const CheckpointFile checkpoint(files->localPath(*name));
+    begun = checkpoint.readProgress();
+    checkpoint.readPixels(begun->film);
+    begun->counters = {}; // rank 0 counts them
+  }
   files.reset();
-  const RenderSettings settings = makeSettings(job.options, scene.background());
+  RenderSettings settings = makeSettings(job.options, scene.background());
   if (const std::string own = describeScene(scene, settings); own != expected)
     throw inputError(request.input, "scene differs from rank 0's (", own, ", not ", expected,
                      "); a file that it refers to may differ between machines");
   RenderMonitor monitor;
   const DeferredStop deferredStop(monitor.stop);
-  runWorker(ranks, scene.view(), settings, monitor);
+  shareRender(ranks, Tiles(request.width, request.height), settings, monitor);
+  render(scene.view(), settings, monitor, std::move(begun));
 }
 
 } // namespace
 
 int dispatchRank(int argc, char** argv) {
   pinInstructions();
-  Ranks ranks;
+  const Ranks ranks;
   if (ranks.count() == 1)
     return dispatch(argc, argv);
+  const std::jthread relay = relayStops();
   const std::vector<std::string> targets =
       ranks.allGather(concat(versionText, " on ", processorText, " by ", instructionSet()));
   if (ranks.rank() == 0)
     return runFirstRank(argc, argv, ranks, targets);
-  if (!waitForStart(ranks))
-    return 0;
   try {
-    runOtherRank(argc, argv, ranks);
-  } catch (const Error& error) {
-    ranks.abort(composeMessage(error.message()), exitStatus(error.kind()));
-  } catch (const std::bad_alloc&) {
-    ranks.abort("out of memory; use fewer ranks per machine, or a smaller image",
-                exitStatus(ErrorKind::output));
-  } catch (const std::exception& error) {
-    ranks.abort(error.what(), exitStatus(ErrorKind::output));
+    if (startTogether(ranks, true))
+      runOtherRank(argc, argv, ranks);
+  } catch (...) {
+    abortRanks(ranks);
   }
   return 0;
 }

@@ -3,7 +3,7 @@
 
 namespace fenestra::core {
 
-/// Runs this process's part of the command: all of it in rank 0, tiles of its image in the others.
+/// Runs this process's part of the command: all of it in rank 0, shards of its image in the others.
 /// A process without others runs any command. Returns the exit status.
 int dispatchRank(int argc, char** argv);
 

@@ -1,27 +1,17 @@
 #pragma once
-// Processes of one mpirun and their messages. No other sources use MPI.
-
-#include "base/Stopwatch.h"
+// Processes of one mpirun and what they exchange. No other sources use MPI.
 
 #include <cstdint>
-#include <mutex>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace fenestra::core {
 
-/// Words of a message; sender and receiver agree on their meaning.
-using RankMessage = std::vector<std::uint64_t>;
-
-struct ReceivedMessage {
-  int from = 0; ///< rank
-  RankMessage message;
-};
-
-/// All methods are thread-safe.
+/// All methods are thread-safe. Except for abort(), each rank must call them, in the same order.
 class Ranks {
 public:
   /// Initializes MPI. Throws Error (output) if MPI cannot be used from threads. At most one object
@@ -35,38 +25,30 @@ public:
   int rank() const { return m_rank; }
   int count() const { return m_count; }
 
-  /// Texts of all ranks in rank order, the same on every rank. Each rank must call this.
-  std::vector<std::string> allGather(const std::string& text);
-  /// Sends the bytes of rank 0 to all others. Each rank must call this, with as many bytes.
-  void broadcast(std::span<char> bytes);
-  /// Sends the text of rank 0 to all others. Each rank must call this.
-  void broadcast(std::string& text);
+  /// Texts of all ranks in rank order, the same on every rank.
+  std::vector<std::string> allGather(const std::string& text) const;
+  /// Sends the values of rank `root` to all others, which pass as many.
+  template <typename T>
+  void broadcast(std::span<T> values, int root = 0) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    broadcastBytes({reinterpret_cast<char*>(values.data()), values.size_bytes()}, root);
+  }
+  /// Sends the text of rank 0 to all others.
+  void broadcast(std::string& text) const;
+  /// Replaces each value by the smallest of all ranks. Waits for the others with hardly any load.
+  void minimize(std::span<std::uint64_t> values) const;
 
-  void send(int to, const RankMessage& message);
-  /// Next message, if any.
-  std::optional<ReceivedMessage> receive();
-  /// True if receive() would return a message.
-  bool hasMessage();
-
-  /// Ends the processes of all ranks, with a message that names this one.
-  [[noreturn]] void abort(std::string_view line, int status);
+  /// Ends the processes of all ranks, with a message that names this one unless it is rank 0.
+  [[noreturn]] void abort(std::string_view line, int status) const;
 
 private:
-  std::mutex m_mutex;
+  void broadcastBytes(std::span<char> bytes, int root) const;
+
   int m_rank = 0, m_count = 1;
 };
 
-/// Waits between polls for messages: an eighth of the time since the last message, within limits.
-/// Rendering threads lose little time to polls during long waits (polls every 0.3 ms took a tenth
-/// of rank 0's time), and short waits are hardly prolonged.
-class BackoffPoller {
-public:
-  /// Restarts the time, after a message.
-  void reset() { m_watch = {}; }
-  void wait() const;
-
-private:
-  Stopwatch m_watch;
-};
+/// A thread that passes a requested stop (program/Stop.h) on to all ranks, each of which must start
+/// one. Its destructor waits for those of the other ranks.
+[[nodiscard]] std::jthread relayStops();
 
 } // namespace fenestra::core

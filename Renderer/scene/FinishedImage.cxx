@@ -34,12 +34,14 @@ double estimateFraction(const RenderMonitor& monitor, const RenderSettings& sett
   return std::clamp(most, 0.0, 1.0);
 }
 
-void ImageDenoiser::limitDisplayNoise(RenderSettings& settings) {
-  settings.displayNoise = [this](const Film& film) {
-    m_checked = denoise(film, m_scene.view(), *m_scene.features());
-    m_checkedSamples = film.sampleCounts().max;
+void ImageDenoiser::attach(RenderMonitor& monitor) {
+  monitor.onPassEnd = [this](const RenderResult& result, PassEnd& end) {
+    if (!end.isNoiseDue)
+      return;
+    m_checked = denoise(result.film, m_scene.view(), *m_scene.features());
+    m_checkedSamples = result.film.sampleCounts().max;
     // Two standard errors more, so that the render does not stop by chance.
-    return std::sqrt(m_checked.estimatedError + 2.0 * m_checked.errorUncertainty);
+    end.displayNoise = std::sqrt(m_checked.estimatedError + 2.0 * m_checked.errorUncertainty);
   };
 }
 

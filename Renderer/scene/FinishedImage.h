@@ -24,9 +24,9 @@ class ImageDenoiser {
 public:
   explicit ImageDenoiser(const PreparedScene& scene) : m_scene(scene) {}
 
-  /// Makes `settings.noise` a limit of the denoised noise. The callback stores its last result
-  /// here.
-  void limitDisplayNoise(RenderSettings& settings);
+  /// Estimates PassEnd::displayNoise, the denoised noise, in monitor.onPassEnd. The callback stores
+  /// its last result here.
+  void attach(RenderMonitor& monitor);
   /// Denoised image; nullopt: the scene has no feature buffers.
   std::optional<FilteredImage> apply(const RenderResult& result) const;
 

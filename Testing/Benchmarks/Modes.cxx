@@ -32,6 +32,7 @@ constexpr Mode table[] = {
     {"adaptive",
      [](const SceneView& scene, RenderSettings settings) {
        settings.noise = 1e-6; // too low to be met: the sample count ends the render
+       settings.isDisplayNoise = false;
        return renderByFenestra(scene, settings);
      }},
     // the scalar integrator: null collisions in a majorant grid, independent samples

@@ -40,7 +40,8 @@ RenderOptions readArguments(const ReferenceCase& c) {
   arguments.insert(arguments.end(), {"--samples", std::to_string(c.samples), "--seed", "42",
                                      "--volume-smoothing", "off"});
   if (c.noise > 0.0)
-    arguments.insert(arguments.end(), {"--noise", std::to_string(c.noise)});
+    arguments.insert(arguments.end(),
+                     {"--noise", std::to_string(c.noise), "--noise-target", "raw"});
   std::vector<char*> argv;
   for (std::string& argument : arguments)
     argv.push_back(argument.data());

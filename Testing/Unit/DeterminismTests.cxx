@@ -76,20 +76,46 @@ TEST(Render, StopsAtTimeLimitAndAtNoiseTarget) {
   EXPECT_GE(converged.finishedSamples, 16U);
 }
 
+TEST(Render, EndsAsAgreedAtTheEndOfAPass) {
+  const TestScene s = makeWavyScene();
+  const auto endAfterTwo = [&](const PassEnd& agreed) {
+    RenderMonitor monitor;
+    int passes = 0;
+    monitor.onPassEnd = [&](const RenderResult&, PassEnd& end) {
+      EXPECT_TRUE(end.isComplete);
+      if (++passes == 2)
+        end = agreed;
+    };
+    return s.visitView([&](const SceneView& scene) { return render(scene, {}, monitor); });
+  };
+  const RenderResult timed = endAfterTwo({true, 0, false, infinity});
+  EXPECT_EQ(timed.reason, StopReason::seconds);
+  EXPECT_EQ(timed.finishedSamples, 4U); // passes of 1 and 3
+  const RenderResult stopped = endAfterTwo({false, 100, false, infinity});
+  EXPECT_EQ(stopped.reason, StopReason::request);
+  EXPECT_EQ(stopped.finishedSamples, 1U);
+  EXPECT_EQ(stopped.begunSamples, 4U);
+}
+
 TEST(Render, DisplayNoiseIsEstimatedAtFixedCountsEqualInAllPixels) {
   const TestScene s = makeWavyScene();
   RenderSettings settings;
   settings.samples = 1000;
   settings.noise = 0.5;
   std::vector<std::uint64_t> counts;
-  settings.displayNoise = [&](const Film& film) {
-    counts.push_back(film.sampleCounts().max);
-    return counts.size() < 3 ? 0.6 : 0.4;
+  settings.isDisplayNoise = true;
+  RenderMonitor monitor;
+  monitor.onPassEnd = [&](const RenderResult& result, PassEnd& end) {
+    if (!end.isNoiseDue)
+      return;
+    counts.push_back(result.film.sampleCounts().max);
+    end.displayNoise = counts.size() < 3 ? 0.6 : 0.4;
   };
   for (const std::uint64_t passSamples : {0U, 3U}) {
     settings.passSamples = passSamples;
     counts.clear();
-    const RenderResult result = s.render(settings);
+    const RenderResult result =
+        s.visitView([&](const SceneView& scene) { return render(scene, settings, monitor); });
     EXPECT_EQ(result.reason, StopReason::noise);
     EXPECT_EQ(counts, (std::vector<std::uint64_t>{4, 8, 16}));
     EXPECT_EQ(result.film.sampleCounts().min, 16U);

@@ -3,8 +3,6 @@
 
 #include "FilmTesting.h"
 
-#include <atomic>
-
 namespace fenestra::core::testing::ResumeTests {
 namespace {
 
@@ -16,25 +14,34 @@ RenderSettings makeSettings(std::uint64_t samples, double noise = -1.0) {
   return settings;
 }
 
-/// Results at the checkpoints of a render of `scene`. One is due after every `period` polls by the
-/// threads; some are in the middle of a pass.
-std::vector<RenderResult> collectCheckpoints(const TestScene& scene, const RenderSettings& settings,
+/// High below 32 samples, then low.
+void estimateDisplayNoise(const RenderResult& result, PassEnd& end) {
+  if (end.isNoiseDue)
+    end.displayNoise = result.film.sampleCounts().max < 32 ? 1.0 : 0.01;
+}
+
+/// Results at every `period`-th pause of a render of `scene` that always pauses; some are in the
+/// middle of a pass.
+std::vector<RenderResult> collectCheckpoints(const TestScene& scene, RenderSettings settings,
                                              int period) {
+  settings.threads = 2; // a pause comes after at least one tile per thread
   std::vector<RenderResult> checkpoints;
-  std::atomic<int> polls = 0;
+  int pauses = 0;
   RenderMonitor monitor;
-  monitor.isCheckpointDue = [&] { return ++polls > period; };
-  monitor.onCheckpoint = [&](const RenderResult& result) {
-    checkpoints.push_back(result);
-    polls = 0;
+  monitor.pauseAt = RenderMonitor::Clock::time_point::min();
+  monitor.onPassEnd = estimateDisplayNoise;
+  monitor.onPause = [&](const RenderResult& result) {
+    if (++pauses % period == 0)
+      checkpoints.push_back(result);
   };
   scene.visitView([&](const SceneView& s) { return render(s, settings, monitor); });
   return checkpoints;
 }
 
 RenderResult resume(const TestScene& scene, const RenderSettings& settings,
-                    const RenderResult& checkpoint) {
+                    const std::optional<RenderResult>& checkpoint) {
   RenderMonitor monitor;
+  monitor.onPassEnd = estimateDisplayNoise;
   return scene.visitView(
       [&](const SceneView& s) { return render(s, settings, monitor, checkpoint); });
 }
@@ -74,7 +81,7 @@ TEST(Resume, AdaptivePlanEndsAtTheSameBits) {
   const RenderResult once = scene.render(settings);
   ASSERT_GT(once.finishedSamples, 2 * SamplePlan::pilotSamples);
   ASSERT_FALSE(once.last.plan.noise().empty());
-  const auto checkpoints = collectCheckpoints(scene, settings, 97);
+  const auto checkpoints = collectCheckpoints(scene, settings, 41);
   ASSERT_GT(checkpoints.size(), 5U);
   for (const RenderResult& checkpoint : checkpoints)
     expectSameEnd(once, resume(scene, settings, checkpoint));
@@ -94,13 +101,20 @@ TEST(Resume, SampleLimitDoesNotChangeThePassesOfANoiseTarget) {
   }
 }
 
+/// Passes cut to one sample must not let a noise target be checked more often.
+TEST(Resume, TimeLimitOfPassesDoesNotChangeTheImageOfANoiseTarget) {
+  const TestScene scene = makeWavyScene(80, 72);
+  RenderSettings settings = makeSettings(1000, 0.05);
+  const RenderResult once = scene.render(settings);
+  settings.passSeconds = 1e-9;
+  expectSameEnd(once, scene.render(settings));
+}
+
 TEST(Resume, DisplayNoiseIsEstimatedAtTheSameCounts) {
   const TestScene scene = makeWavyScene();
   RenderSettings settings = makeSettings(1000, 0.05);
-  settings.displayNoise = [](const Film& film) {
-    return film.sampleCounts().max < 32 ? 1.0 : 0.01;
-  };
-  const RenderResult once = scene.render(settings);
+  settings.isDisplayNoise = true;
+  const RenderResult once = resume(scene, settings, {});
   EXPECT_EQ(once.finishedSamples, 32U);
   for (const RenderResult& checkpoint : collectCheckpoints(scene, settings, 17))
     expectSameEnd(once, resume(scene, settings, checkpoint));

@@ -75,7 +75,7 @@ std::uint64_t chooseNoisePassSize(const LastPass& last, const RenderSettings& se
   return std::min(choosePassSize(done - minNoiseSamples, settings), most);
 }
 
-/// Lets all threads render the rest of a pass, until its end, a checkpoint or a stop. Tiles are
+/// Lets all threads render the rest of a pass, until its end, a pause or a stop. Tiles are
 /// added complete or not at all.
 template <typename Tracer>
 void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& total,
@@ -88,7 +88,7 @@ void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& t
   tbb::parallel_for(
       0, threads,
       [&](int) {
-        TileStream stream(pass, monitor.isCheckpointDue);
+        TileStream stream(pass, monitor.pauseAt);
         if (!monitor.stop.load(std::memory_order_relaxed))
           tracer.trace(stream, maxPaths, counters.local());
       },
@@ -103,24 +103,6 @@ struct PassInputs {
   Sampler sampler;
 };
 
-/// renderTiles, while remote workers render other tiles of the pass.
-template <typename Tracer>
-void renderWithWorkers(const Tracer& tracer, Pass& pass, RenderResult& result,
-                       RenderMonitor& monitor) {
-  const RemoteWorkers& workers = monitor.workers;
-  if (workers.count == 0)
-    return renderTiles(tracer, pass, result.film, result.counters, monitor);
-  workers.dispatch(pass, result);
-  try {
-    renderTiles(tracer, pass, result.film, result.counters, monitor);
-  } catch (...) { // pass and film are about to be destroyed
-    monitor.stop = true;
-    workers.join(monitor);
-    throw;
-  }
-  result.counters += workers.join(monitor);
-}
-
 /// Renders the samples that the film lacks up to stage `result.begunSamples`. Returns false if
 /// stopped before all were finished.
 template <typename Tracer>
@@ -130,10 +112,11 @@ bool renderPass(const Tracer& tracer, const PassInputs& inputs, RenderResult& re
   Pass pass(inputs.tiles, plan.at(result.finishedSamples), plan.at(result.begunSamples),
             inputs.empty, inputs.sampler, result.film, monitor.paths);
   for (;;) {
-    renderWithWorkers(tracer, pass, result, monitor);
+    renderTiles(tracer, pass, result.film, result.counters, monitor);
     if (pass.isComplete() || monitor.stop)
       return pass.isComplete();
-    monitor.onCheckpoint(result); // tiles are left, so a checkpoint is due
+    if (monitor.onPause)
+      monitor.onPause(result);
   }
 }
 
@@ -154,28 +137,34 @@ EmptyPixels markEmptyPixels(const SceneView& scene, const RenderSettings& settin
   return empty;
 }
 
-/// Measures passes, and predicts the samples that fit into the time limit.
+/// Measures passes, and predicts the samples that fit into the time limits.
 class TimeBudget {
 public:
-  explicit TimeBudget(double limit) : m_limit(limit) {}
+  explicit TimeBudget(const RenderSettings& settings)
+      : m_limit(settings.seconds), m_passLimit(settings.passSeconds) {}
 
   void addPass(std::uint64_t samples) {
     const double now = m_watch.seconds();
     m_perSample = (now - m_last) / static_cast<double>(samples);
     m_last = now;
   }
-  /// Excludes the time since the last pass, which was spent on a noise estimate.
+  /// Excludes the time since the last pass, which was spent at its end.
   void restartClock() { m_last = m_watch.seconds(); }
-  /// Samples per pixel that fit into the remaining time, at the speed of the last pass.
-  std::uint64_t affordableSamples() const {
-    if (!(m_limit < infinity) || m_perSample == 0.0)
+  /// Samples per pixel that fit into the remaining time and into a pass, at the speed of the last
+  /// pass; 1 before the first.
+  std::uint64_t maxNextSamples() const {
+    if (!(std::min(m_limit, m_passLimit) < infinity))
       return std::numeric_limits<std::uint64_t>::max();
-    const double left = m_limit - m_watch.seconds();
-    return static_cast<std::uint64_t>(std::clamp(left / m_perSample, 0.0, 1e9));
+    if (m_perSample == 0.0)
+      return 1;
+    const auto fit = [&](double seconds, double least) {
+      return static_cast<std::uint64_t>(std::clamp(seconds / m_perSample, least, 1e9));
+    };
+    return std::min(fit(m_limit - m_watch.seconds(), 0.0), fit(m_passLimit, 1.0));
   }
 
 private:
-  double m_limit;
+  double m_limit, m_passLimit;
   Stopwatch m_watch;
   double m_last = 0.0, m_perSample = 0.0;
 };
@@ -203,26 +192,31 @@ public:
     return left <= size + size / 2 ? left : size; // avoids a short last pass
   }
 
-  /// Estimates the noise after a pass, if an estimate is due, into `monitor.noise`. Returns true if
-  /// the target is reached. If the pass was not cut short, it becomes result.last.
-  bool check(RenderResult& result, bool isShortened, RenderMonitor& monitor) const {
+  /// True if PassEnd::displayNoise is needed at this number of samples.
+  bool needsDisplayNoise(std::uint64_t done) const {
+    return hasDisplayNoise() && nextNoiseCheck(done - 1) == done;
+  }
+
+  /// Stores the noise after a pass in `monitor.noise`. Returns true if the target is reached. If
+  /// the pass was not cut short, it becomes result.last.
+  bool check(RenderResult& result, const PassEnd& end, bool isShortened,
+             RenderMonitor& monitor) const {
     const std::uint64_t done = result.finishedSamples;
     std::atomic<double>& noise = monitor.noise;
     if (!isShortened)
       result.last.samples = done;
     if (hasDisplayNoise()) {
-      if (nextNoiseCheck(done - 1) != done) // no estimate is due
+      if (!end.isNoiseDue)
         return false;
-      noise = m_settings.displayNoise(result.film);
+      noise = end.displayNoise;
       return noise <= m_settings.noise;
     }
     const bool isPlanned = m_settings.isAdaptive();
     if (isPlanned || monitor.isNoiseWanted)
       noise = result.film.noise();
-    if (!isPlanned)
+    if (!isPlanned || isShortened)
       return false;
-    if (!isShortened)
-      result.last.noise = noise;
+    result.last.noise = noise;
     if (done < minNoiseSamples)
       return false;
     if (done == minNoiseSamples)
@@ -231,18 +225,17 @@ public:
   }
 
 private:
-  bool hasDisplayNoise() const { return m_settings.noise > 0.0 && m_settings.displayNoise; }
+  bool hasDisplayNoise() const { return m_settings.noise > 0.0 && m_settings.isDisplayNoise; }
 
   const RenderSettings& m_settings;
   const PassGrowth m_growth;
 };
 
 /// Short passes cost more per sample: each pass reloads the volume into the caches and ends with
-/// idle threads. So passes grow fourfold if no image is shown between them. With several processes,
-/// each of which transfers the film, they grow faster and larger.
-PassGrowth choosePassGrowth(const RenderMonitor& monitor) {
-  const auto processes = static_cast<std::uint64_t>(monitor.workers.count) + 1;
-  return {(monitor.onPassEnd ? 1 : 3) * processes, 16 * processes};
+/// idle threads. So passes of a shard, which has fewer tiles, grow faster and larger.
+PassGrowth choosePassGrowth(const RenderSettings& settings) {
+  const auto shards = static_cast<std::uint64_t>(settings.shard.count);
+  return {settings.passGrowth * shards, 16 * shards};
 }
 
 /// Result before the first sample.
@@ -275,58 +268,45 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& target, const
                           markEmptyPixels(scene, settings, result.film), sampler};
   monitor.paths = result.finishedSamples * result.film.pixelCount() /
                   static_cast<std::size_t>(settings.shard.count);
-  const NoiseLimit noiseLimit(settings, choosePassGrowth(monitor));
-  TimeBudget budget(settings.seconds);
-  const auto checkNoise = [&](bool isShortened) {
-    const bool isReached = noiseLimit.check(result, isShortened, monitor);
-    if (isReached)
+  const NoiseLimit noiseLimit(settings, choosePassGrowth(settings));
+  TimeBudget budget(settings);
+  std::uint64_t maxNextSamples = budget.maxNextSamples();
+  // Returns true if the render ends with this pass.
+  const auto endPass = [&](std::uint64_t done, bool isComplete, bool isShortened) {
+    PassEnd end{isComplete, budget.maxNextSamples(),
+                isComplete && noiseLimit.needsDisplayNoise(done), infinity};
+    if (monitor.onPassEnd)
+      monitor.onPassEnd(result, end);
+    maxNextSamples = end.maxNextSamples;
+    if (end.isComplete)
+      result.finishedSamples = done;
+    if (!end.isComplete)
+      result.reason = StopReason::request;
+    else if (noiseLimit.check(result, end, isShortened, monitor))
       result.reason = StopReason::noise;
-    return isReached;
+    budget.restartClock();
+    return result.reason != StopReason::samples;
   };
-  if (isAtLastPass(result) && checkNoise(false))
+  if (isAtLastPass(result) && endPass(result.finishedSamples, true, false))
     return result;
   while (result.finishedSamples < settings.samples) {
     const std::uint64_t done = result.finishedSamples;
     const std::uint64_t passEnd =
         std::max(result.last.samples + noiseLimit.nextPass(result.last), done + 1);
-    const std::uint64_t count =
-        std::min({passEnd - done, settings.samples - done, budget.affordableSamples()});
+    const std::uint64_t count = std::min({passEnd - done, settings.samples - done, maxNextSamples});
     if (count == 0) {
       result.reason = StopReason::seconds;
       return result;
     }
-    if (done > 0 && monitor.onPassEnd)
-      monitor.onPassEnd(result);
-    if (monitor.isCheckpointDue && monitor.isCheckpointDue())
-      monitor.onCheckpoint(result);
+    if (done > 0 && monitor.onPause)
+      monitor.onPause(result);
     result.begunSamples = done + count;
-    if (!renderPass(tracer, inputs, result, monitor)) {
-      result.reason = StopReason::request;
-      return result;
-    }
+    const bool isComplete = renderPass(tracer, inputs, result, monitor);
     budget.addPass(count);
-    result.finishedSamples += count;
-    if (checkNoise(result.finishedSamples < passEnd))
+    if (endPass(done + count, isComplete, done + count < passEnd))
       return result;
-    budget.restartClock();
   }
   return result;
-}
-
-template <typename Tracer>
-void renderEachLease(const Tracer& tracer, const SceneView& scene, const RenderSettings& settings,
-                     RenderMonitor& monitor,
-                     const std::function<std::optional<TileLease>(RenderResult&)>& next) {
-  const Sampler sampler(settings.sampling, settings.seed);
-  RenderResult result = makeEmptyResult(scene.camera, sampler);
-  const EmptyPixels empty = markEmptyPixels(scene, settings, result.film);
-  while (const std::optional<TileLease> lease = next(result)) {
-    result.counters = {};
-    const SamplePlan& plan = result.last.plan;
-    Pass pass(lease->tiles, plan.at(lease->from), plan.at(lease->to), empty, sampler, result.film,
-              monitor.paths);
-    renderTiles(tracer, pass, result.film, result.counters, monitor);
-  }
 }
 
 /// Calls work(tracer, target) with the SIMD integrator.
@@ -392,13 +372,6 @@ RenderResult render(const SceneView& scene, const RenderSettings& settings, Rend
       scene, settings, monitor.stop, [&](const auto& tracer, const std::string& target) {
         return renderPasses(tracer, target, scene, settings, monitor, std::move(resumed));
       });
-}
-
-void renderLeases(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
-                  const std::function<std::optional<TileLease>(RenderResult&)>& next) {
-  traceScene(scene, settings, monitor.stop, [&](const auto& tracer, const std::string&) {
-    renderEachLease(tracer, scene, settings, monitor, next);
-  });
 }
 
 } // namespace fenestra::core

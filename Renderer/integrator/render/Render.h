@@ -15,6 +15,7 @@
 #include "model/volume/Volume.h"
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <string>
 
@@ -59,51 +60,51 @@ struct RenderSettings {
   std::uint64_t samples = 64; ///< limit of the mean number per pixel
   double seconds = infinity;  ///< limit of the rendering time
   double noise = -1.0; ///< limit of Film::noise() after a pass, from 16 samples on; negative: none
-  /// Noise of the final display image, compared with `noise` instead of Film::noise(). Evaluated at
-  /// 4, 8, 16, ... samples only, so that a low estimate by chance is unlikely to end the render.
-  std::function<double(const Film&)> displayNoise = {};
+  /// `noise` limits PassEnd::displayNoise instead, estimated at 4, 8, 16, ... samples only, so that
+  /// a low estimate by chance is unlikely to end the render.
+  bool isDisplayNoise = false;
   std::uint64_t seed = 0;
   Sampling sampling = Sampling::stratified;
   Integrator integrator = Integrator::simd;
-  int threads = 0;               ///< 0: all
-  std::uint64_t passSamples = 0; ///< per pass; 0: growing passes. Does not affect the image.
-  Shard shard = {}; ///< tiles to render; the others stay empty. Not together with `noise`.
+  int threads = 0; ///< 0: all
+  // Passes do not affect the image.
+  std::uint64_t passSamples = 0; ///< per pass; 0: growing passes
+  std::uint64_t passGrowth = 3;  ///< samples of a growing pass per sample before it
+  double passSeconds = infinity; ///< limit of a pass's time, at the speed of the last one
+  /// Tiles to render. The others stay as they are, so `noise` needs an onPassEnd that adds them.
+  Shard shard = {};
 
   /// True if noisier pixels get more samples after the pilot.
-  bool isAdaptive() const { return noise > 0.0 && !displayNoise; }
+  bool isAdaptive() const { return noise > 0.0 && !isDisplayNoise; }
 };
 
-class Pass;
-struct RenderMonitor;
+/// How a pass ended, and what the next one depends on.
+struct PassEnd {
+  bool isComplete;              ///< false: the render was stopped before all tiles were finished
+  std::uint64_t maxNextSamples; ///< per pixel in the next pass, by the limits of time; 0: it ends
+  bool isNoiseDue;              ///< displayNoise is needed
+  double displayNoise;          ///< estimated noise of the display image; infinity: unknown
+};
+
 struct RenderResult;
-
-/// Other processes that render tiles of a pass. Another thread of this process adds the tiles to
-/// the film. This process alone holds limits, plan, checkpoints and stop flag. Tiles come back
-/// complete or not at all, so nothing is lost with a worker that dies.
-struct RemoteWorkers {
-  int count = 0;
-  /// Sends them tiles of the pass, and lets them add to result.film until the next join().
-  std::function<void(Pass&, RenderResult&)> dispatch = {};
-  /// Called when this process's threads have no tile left, or pause. Returns when the pass is
-  /// complete or `monitor` requests a checkpoint or a stop; after that nothing is added. Returns
-  /// the counters of what was added.
-  std::function<Counters(const RenderMonitor&)> join = {};
-};
 
 /// Progress of a running render, and its stop flag.
 struct RenderMonitor {
+  using Clock = std::chrono::steady_clock;
+
   std::atomic<bool> stop = false;
   std::atomic<std::uint64_t> paths = 0; ///< finished so far; empty pixels count in full
   std::atomic<double> noise = infinity; ///< latest estimate
   /// Estimate `noise` after each pass even if no limit needs it.
   bool isNoiseWanted = false;
-  /// Called between two passes with the result so far; the render waits.
-  std::function<void(const RenderResult&)> onPassEnd = {};
-  /// Polled often, by all threads. Once true, they finish their tiles, and onCheckpoint is called
-  /// with the result so far, from which render() can resume; the render waits. Empty: never.
-  std::function<bool()> isCheckpointDue = {};
-  std::function<void(const RenderResult&)> onCheckpoint = {};
-  RemoteWorkers workers = {};
+  /// Time of the next pause: threads then finish their tiles and take no others.
+  std::atomic<Clock::time_point> pauseAt = Clock::time_point::max();
+  /// Called in each pause and between two passes with the result so far, from which render() can
+  /// resume. The render waits.
+  std::function<void(const RenderResult&)> onPause = {};
+  /// Called at the end of each pass, before anything is decided by it. May add the tiles of other
+  /// shards to the film, and change `end` to what all processes have agreed on.
+  std::function<void(RenderResult&, PassEnd& end)> onPassEnd = {};
 };
 
 enum class StopReason { samples, seconds, noise, request };
@@ -140,19 +141,5 @@ std::string findTarget(const SceneView& scene, const RenderSettings& settings);
 /// samples, and past the pilot the same isAdaptive().
 RenderResult render(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
                     std::optional<RenderResult> resumed = {});
-
-/// Tiles that another process assigns, and the stages of the plan (SamplePlan::at) between which
-/// their pixels lack samples.
-struct TileLease {
-  std::vector<int> tiles;
-  std::uint64_t from = 0, to = 0;
-};
-
-/// Renders tiles as a remote worker of another process. `next` first collects the finished tiles of
-/// the last lease from result.film, and result.counters, unless the stop flag is set. It then
-/// stores the pixels of the next lease in result.film and the plan in result.last, and returns that
-/// lease; nothing at the end.
-void renderLeases(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
-                  const std::function<std::optional<TileLease>(RenderResult&)>& next);
 
 } // namespace fenestra::core

@@ -1,5 +1,7 @@
 #include "integrator/render/TileStream.h"
 
+#include <utility>
+
 namespace fenestra::core {
 
 Pass::Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
@@ -14,13 +16,11 @@ Pass::Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const Samp
       m_film(film),
       m_paths(paths) {}
 
-std::span<const int> Pass::take(std::size_t maxCount) {
+std::span<const int> Pass::takeTiles() {
+  const std::size_t left = m_tiles.size() - std::min<std::size_t>(m_nextTile, m_tiles.size());
+  const std::size_t maxCount = std::min<std::size_t>(4, 1 + left / 64);
   const std::size_t first = std::min(m_nextTile.fetch_add(maxCount), m_tiles.size());
   return m_tiles.subspan(first, std::min(maxCount, m_tiles.size() - first));
-}
-
-void Pass::returnTile(int tile) {
-  countTile(forEachPixel(tile, [](int, int, std::size_t) {}));
 }
 
 void TileStream::fill(CameraSamples& samples, std::size_t maxCount) {
@@ -53,15 +53,6 @@ void TileStream::fill(CameraSamples& samples, std::size_t maxCount) {
   }
 }
 
-/// Takes neighboring tiles, which read similar parts of the volume; one at a time near the end, so
-/// that all threads get some. Returns false if none is left or the pass pauses.
-bool TileStream::takeTiles() {
-  if (m_isPaused && m_isPaused())
-    return false;
-  m_taken = m_pass.take(std::min<std::size_t>(4, 1 + m_pass.tilesLeft() / 64));
-  return !m_taken.empty();
-}
-
 /// Opens the next tile that lacks samples; false if none is left or the pass pauses.
 bool TileStream::openTile() {
   if (m_freeSlots.empty()) {
@@ -70,8 +61,13 @@ bool TileStream::openTile() {
   }
   Tile& tile = m_tiles[m_freeSlots.back()];
   for (;;) {
-    if (m_taken.empty() && !takeTiles())
-      return false;
+    if (m_taken.empty()) {
+      if (std::exchange(m_hasTaken, true) && Clock::now() >= m_pauseAt.load())
+        return false;
+      m_taken = m_pass.takeTiles();
+      if (m_taken.empty())
+        return false;
+    }
     listSamples(tile, m_taken.front());
     m_taken = m_taken.subspan(1);
     if (tile.pending > 0)

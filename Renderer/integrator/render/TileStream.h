@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <functional>
+#include <chrono>
 #include <span>
 
 namespace fenestra::core {
@@ -28,18 +28,12 @@ public:
   /// True once all tiles have been added to the film.
   bool isComplete() const { return m_tilesDone == m_tiles.size(); }
 
-  /// Number of tiles that no thread or process has taken.
-  std::size_t tilesLeft() const {
-    return m_tiles.size() - std::min<std::size_t>(m_nextTile, m_tiles.size());
-  }
-  /// Takes the next tiles, at most `maxCount`, for a thread or for another process.
-  std::span<const int> take(std::size_t maxCount);
-  /// Marks a tile of another process as finished, once the film has its samples.
-  void returnTile(int tile);
-
 private:
   friend class TileStream;
 
+  /// Takes the next tiles for a thread: neighboring ones, which read similar parts of the volume;
+  /// one at a time near the end, so that all threads get some. Empty: none is left.
+  std::span<const int> takeTiles();
   /// Calls visit(column, row, index in the film) for the pixels of a tile. Returns the samples that
   /// the pass adds to them; empty pixels count in full.
   template <typename Visit>
@@ -72,9 +66,11 @@ private:
 /// One thread's part of a pass: the source of paths for SimdPathIntegrator::trace.
 class TileStream {
 public:
-  /// Takes no more tiles once `isPaused`, if not empty, returns true. It must outlive the stream.
-  TileStream(Pass& pass, const std::function<bool()>& isPaused)
-      : m_pass(pass), m_isPaused(isPaused) {}
+  using Clock = std::chrono::steady_clock;
+
+  /// From `pauseAt` on, which must outlive the stream, takes tiles only once.
+  TileStream(Pass& pass, const std::atomic<Clock::time_point>& pauseAt)
+      : m_pass(pass), m_pauseAt(pauseAt) {}
 
   /// Generator of the samples' random numbers.
   const Sampler& sampler() const { return m_pass.m_sampler; }
@@ -104,13 +100,13 @@ private:
     std::size_t pending = 0;
   };
 
-  bool takeTiles();
   bool openTile();
   void listSamples(Tile& tile, int index) const;
   void close(Tile& tile);
 
   Pass& m_pass;
-  const std::function<bool()>& m_isPaused;
+  const std::atomic<Clock::time_point>& m_pauseAt;
+  bool m_hasTaken = false;                ///< any tiles
   std::span<const int> m_taken;           ///< tiles not yet open
   std::vector<Tile> m_tiles;              ///< open tiles, and free slots
   std::vector<std::uint32_t> m_freeSlots; ///< free slots in m_tiles
