@@ -166,8 +166,8 @@ stage_tsan() {
 stage_clang() {
   install_packages clang
   (cd "$top" && cmake --preset dev -B build-clang -DCMAKE_CXX_COMPILER=clang++ >/dev/null &&
-    cmake --build build-clang --target all MicroBenchmarks ChangeBenchmark LoadingBenchmark CorruptedFiles \
-      MakeSamples MakeBaselines)
+    cmake --build build-clang --target all MicroBenchmarks ChangeBenchmark ShardBenchmark LoadingBenchmark \
+      CorruptedFiles MakeSamples MakeBaselines)
   print_table clang run_labels "$top/build-clang" "${labels[@]}" benchmark
 }
 

@@ -2,7 +2,8 @@
 # Builds Release with a benchmark program and the phantoms that it renders, and runs it.
 # usage: bash Testing/Benchmarks/run.sh PROGRAM [OPTION...]
 #   EfficiencyBenchmark, DenoiserBenchmark, AppearanceBenchmark: print CSV (see their --help)
-#   MicroBenchmarks, ChangeBenchmark, LoadingBenchmark, SeriesBenchmark, SmoothingBenchmark: see README.md
+#   MicroBenchmarks, ChangeBenchmark, ShardBenchmark, LoadingBenchmark, SeriesBenchmark, SmoothingBenchmark: see
+#   README.md
 # FENESTRA_BUILD selects another build folder.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../Resources/setup.sh"

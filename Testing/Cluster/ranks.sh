@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Images by several MPI ranks must equal those of one process byte for byte, with --samples and with --noise.
+# Images by several MPI ranks must equal those of one process byte for byte, with --samples and with --noise, raw and
+# denoised, also if another number of processes began them.
 # If a rank is killed, the job must end and name the rank, and a single process must resume from the checkpoint.
-# --seconds, a signal, different instruction sets and a usage error must end all ranks.
+# --seconds, a signal to one rank, different instruction sets and a usage error must end all ranks.
 # usage: ranks.sh FENESTRA FENESTRA_MPI RANKS...; exit status 77: skipped.
 set -euo pipefail
 export LC_ALL=C
@@ -66,11 +67,18 @@ start_ranks() {
 wait_for_run() {
   status=0
   wait "$run" || status=$?
+  times >"$work/times"
+}
+
+# count_cpu_seconds: prints the user time of all jobs waited for.
+count_cpu_seconds() {
+  awk 'NR == 2 { split($1, time, "[ms]"); print int(60 * time[1] + time[2]) }' "$work/times"
 }
 
 samples=(volume.nrrd --size 72x64 --samples 20 --threads 1 --progress none --output v.exr --output v.png)
 noise=(volume.nrrd --size 72x64 --noise 0.15 --threads 1 --progress none --output v.exr)
-for kind in samples noise; do
+denoised=(volume.nrrd --size 72x64 --noise 0.05 --threads 1 --progress none --output v.png)
+for kind in samples noise denoised; do
   declare -n arguments=$kind
   enter_folder "$kind-alone"
   "$program" "${arguments[@]}" >out 2>&1 || fail "$(cat out)"
@@ -112,6 +120,29 @@ kill -TERM "$(find_rank 0)" || fail 'no rank 0'
 wait_for_run
 [ "$status" -eq 5 ] || fail "SIGTERM ends with status $status: $(cat out)"
 [ -e v.exr ] || fail 'no image after SIGTERM'
+run_ranks 3 "$program_mpi" "${long[@]}" >out 2>&1 || fail "other ranks cannot resume: $(cat out)"
+cmp ../long-alone/v.exr v.exr || fail 'the image that other ranks resumed differs'
+
+# The first pass takes 30 CPU seconds per rank. A stop of one rank must end it on both.
+enter_folder stopped-pass
+times >"$work/times"
+before=$(count_cpu_seconds)
+start_ranks volume.nrrd --size 700x700 --density-scale 100 --bounces 1000 --threads 1 --progress none \
+  --checkpoint v.film --output v.exr
+kill -TERM "$(find_rank 1)" || fail 'no rank 1'
+wait_for_run
+[ "$status" -eq 5 ] || fail "SIGTERM to rank 1 ends with status $status: $(cat out)"
+spent=$(($(count_cpu_seconds) - before))
+[ "$spent" -lt 30 ] || fail "ranks work for $spent CPU seconds although one was stopped"
+
+# One process begins, with a higher noise; ranks continue its sample plan.
+plan=(volume.nrrd --size 72x64 --threads 1 --progress none --checkpoint v.film --output v.exr --noise)
+enter_folder plan-alone
+"$program" "${plan[@]}" 0.15 >out 2>&1 || fail "$(cat out)"
+enter_folder plan
+"$program" "${plan[@]}" 0.2 >out 2>&1 || fail "$(cat out)"
+run_ranks 2 "$program_mpi" "${plan[@]}" 0.15 >out 2>&1 || fail "ranks cannot resume: $(cat out)"
+cmp ../plan-alone/v.exr v.exr || fail 'the image that ranks resumed from one process differs'
 
 enter_folder refused
 status=0
