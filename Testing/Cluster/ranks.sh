@@ -123,11 +123,11 @@ wait_for_run
 run_ranks 3 "$program_mpi" "${long[@]}" >out 2>&1 || fail "other ranks cannot resume: $(cat out)"
 cmp ../long-alone/v.exr v.exr || fail 'the image that other ranks resumed differs'
 
-# The first pass takes 30 CPU seconds per rank. A stop of one rank must end it on both.
+# The first pass takes about 60 CPU seconds per rank. A stop of one rank must end it on both.
 enter_folder stopped-pass
 times >"$work/times"
 before=$(count_cpu_seconds)
-start_ranks volume.nrrd --size 700x700 --density-scale 100 --bounces 1000 --threads 1 --progress none \
+start_ranks volume.nrrd --size 1000x1000 --density-scale 100 --bounces 1000 --threads 1 --progress none \
   --checkpoint v.film --output v.exr
 kill -TERM "$(find_rank 1)" || fail 'no rank 1'
 wait_for_run

@@ -101,10 +101,12 @@ TEST(Resume, SampleLimitDoesNotChangeThePassesOfANoiseTarget) {
   }
 }
 
-/// Passes cut to one sample must not let a noise target be checked more often.
+/// Passes cut to one sample must not let a noise target be checked more often: the first pass after
+/// the pilot ends below the target.
 TEST(Resume, TimeLimitOfPassesDoesNotChangeTheImageOfANoiseTarget) {
   const TestScene scene = makeWavyScene(80, 72);
   RenderSettings settings = makeSettings(1000, 0.05);
+  settings.passSamples = 1000;
   const RenderResult once = scene.render(settings);
   settings.passSeconds = 1e-9;
   expectSameEnd(once, scene.render(settings));
