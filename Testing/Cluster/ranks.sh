@@ -77,7 +77,7 @@ count_cpu_seconds() {
 
 samples=(volume.nrrd --size 72x64 --samples 20 --threads 1 --progress none --output v.exr --output v.png)
 noise=(volume.nrrd --size 72x64 --noise 0.15 --threads 1 --progress none --output v.exr)
-denoised=(volume.nrrd --size 72x64 --noise 0.05 --threads 1 --progress none --output v.png)
+denoised=(volume.nrrd --size 72x64 --noise 0.08 --threads 1 --progress none --output v.png)
 for kind in samples noise denoised; do
   declare -n arguments=$kind
   enter_folder "$kind-alone"
