@@ -6,6 +6,7 @@
 #include "fenestra/Segmentation.h"
 #include "files/medical/ArraySource.h"
 #include "files/medical/VolumeChoice.h"
+#include "files/segments/SegmentationReader.h"
 #include "io/Sandbox.h"
 #include "io/platform/ProcessState.h"
 #include "model/volume/Grid.h"

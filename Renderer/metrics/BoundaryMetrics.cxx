@@ -90,19 +90,24 @@ std::vector<OutlineEdge> findOutlineEdges(const Clip& clip, const Domain& volume
 
 /// Point on the outline of the focus.
 struct OutlinePoint {
-  double depth; ///< of the focus just inside, mm
-  Vec2 outside; ///< just outside
+  double depth;        ///< of the focus just inside, mm
+  Vec2 outside;        ///< just outside
+  bool isSlot = false; ///< the focus goes on in a closed slot (SilhouetteCells.h)
 };
 
 /// Bisects for the outline between `inside` and `outside`, to 2^-24 of their distance.
 std::vector<OutlinePoint> findOutlinePoints(const FocusTracer& tracer,
                                             const std::vector<OutlineEdge>& edges) {
   std::vector<OutlinePoint> points;
-  std::vector<Vec2> in, middle(edges.size());
+  std::vector<Vec2> in, outside, middle(edges.size());
   for (const OutlineEdge& edge : edges) {
     in.push_back(edge.inside);
+    outside.push_back(edge.outside);
     points.push_back({edge.focusDepth, edge.outside});
   }
+  const std::vector<double> beyond = tracer.findDepths(outside);
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    points[i].isSlot = beyond[i] < infinity;
   for (int step = 0; step < 24; ++step) {
     for (std::size_t i = 0; i < edges.size(); ++i)
       middle[i] = 0.5 * (in[i] + points[i].outside);
@@ -133,7 +138,8 @@ BoundaryMetrics measureBoundary(const Clip& clip, const Domain& volume, const Ma
     const OutlineEdge& edge = edges[i];
     ++metrics.crossings;
     // A steep slope of the focus just before the outline also counts as a jump.
-    if (edge.hasDepthJump || std::abs(points[i].depth - edge.focusDepth) > depthJump)
+    if (edge.hasDepthJump || points[i].isSlot ||
+        std::abs(points[i].depth - edge.focusDepth) > depthJump)
       continue;
     const double context = findContextDepth(clip, volume, points[i].outside);
     if (hasSteps(clip))

@@ -161,7 +161,7 @@ ClipResult buildDepthClip(const ClipRequest& request, ClipMode mode, const Domai
                     .splineSeconds = surface.splineSeconds,
                     .fillSeconds = surface.fillSeconds};
   if (measure)
-    result.boundary = measureBoundary(result.clip, domain, focus, surface.focus);
+    result.boundary = measureBoundary(result.clip, domain, focus, surface.shown);
   if (options.mode == SurfaceMode::surface && !result.mismatch && result.boundary)
     result.mismatch = result.boundary->gap;
   return result;

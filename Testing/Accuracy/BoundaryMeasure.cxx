@@ -147,11 +147,36 @@ bool FocusView::isAtOutlineJump(const Point& point) const {
   return greatest - least > jumpDepth;
 }
 
+/// True if the point is occluded, and both the outline and nearer, unoccluded focus are within the
+/// width of a slot, and a pixel for its sampling.
+bool FocusView::isInSlot(const Point& point, const Surface& surface) const {
+  if (point.depth - surface(point.raster) <= strictTolerance)
+    return false;
+  const double raysPerMm = double{raysAcrossPixel} * m_view.size / (2.0 * m_view.halfHeight);
+  const auto radius = static_cast<std::int64_t>(
+      std::ceil(std::min(m_field.longestEdge(), 2.0) * raysPerMm) + raysAcrossPixel);
+  const std::size_t center = findNearestRay(point.raster);
+  const auto width = static_cast<std::int64_t>(m_width);
+  const std::int64_t row = static_cast<std::int64_t>(center) / width,
+                     column = static_cast<std::int64_t>(center) % width;
+  bool hasOutside = false, hasNearer = false;
+  for (std::int64_t r = std::max<std::int64_t>(row - radius, 0);
+       r <= std::min(row + radius, width - 1); ++r)
+    for (std::int64_t c = std::max<std::int64_t>(column - radius, 0);
+         c <= std::min(column + radius, width - 1); ++c) {
+      const auto ray = static_cast<std::size_t>(r * width + c);
+      hasOutside = hasOutside || m_rays[ray] == infinity;
+      hasNearer = hasNearer || (m_rays[ray] < point.depth - strictTolerance &&
+                                m_rays[ray] - surface(rasterPosition(ray)) <= strictTolerance);
+    }
+  return hasOutside && hasNearer;
+}
+
 BoundaryMeasure FocusView::measure(const Surface& surface) const {
   BoundaryMeasure result;
   std::vector<double> gaps, cuts;
   for (const auto& [inner, outer] : m_outline)
-    if (!isAtJump(inner) && !isAtOutlineJump(inner)) {
+    if (!isAtJump(inner) && !isAtOutlineJump(inner) && !isInSlot(inner, surface)) {
       gaps.push_back(std::abs(inner.depth - surface(outer)));
       cuts.push_back(std::max(0.0, surface(inner.raster) - inner.depth));
     }
@@ -165,6 +190,10 @@ BoundaryMeasure FocusView::measure(const Surface& surface) const {
     if (m_rays[ray] < infinity) {
       const Vec2 raster = rasterPosition(ray);
       const double remaining = m_rays[ray] - surface(raster);
+      if (isInSlot({raster, m_rays[ray]}, surface)) {
+        result.slotFraction += 1.0;
+        continue;
+      }
       const bool isJump = isAtJump({raster, m_rays[ray]});
       const bool isShown = remaining <= 0.5 * m_field.longestEdge();
       result.rays += 1.0;
@@ -173,6 +202,7 @@ BoundaryMeasure FocusView::measure(const Surface& surface) const {
       jumps += isJump ? 1.0 : 0.0;
       halfVoxelSmooth += isShown && !isJump ? 1.0 : 0.0;
     }
+  result.slotFraction /= result.rays;
   result.strictFraction /= result.rays;
   result.halfVoxelFraction /= result.rays;
   result.halfVoxelSmooth = halfVoxelSmooth / (result.rays - jumps);
@@ -181,7 +211,8 @@ BoundaryMeasure FocusView::measure(const Surface& surface) const {
   for (std::size_t i = 0; i < m_centers.size(); ++i)
     if (m_centers[i] < infinity) {
       const Vec2 center(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
-      result.centerGap = std::max(result.centerGap, m_centers[i] - surface(center));
+      if (!isInSlot({center, m_centers[i]}, surface))
+        result.centerGap = std::max(result.centerGap, m_centers[i] - surface(center));
     }
   return result;
 }

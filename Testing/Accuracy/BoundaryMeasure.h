@@ -12,6 +12,9 @@
 //   pixel centers, or among the outline depths at the neighboring rays. There, one part of the
 //   focus occludes another, so the outline has two depths. Fractions are reported with and without
 //   jumps.
+// - Slot: a strip of the focus at its outline that is occluded, although the focus beside it is
+//   nearer and unoccluded. It must be narrower than the longest label voxel edge and 2 mm, and is
+//   left out of all other measures.
 
 #include "FocusField.h"
 #include "Views.h"
@@ -34,7 +37,8 @@ struct BoundaryMeasure {
   double jumpFraction = 0.0; ///< fraction of the outline points; excluded from `gap` and `cut`
   Distances gap;             ///< |surface just outside - focus's last point|
   Distances cut;             ///< depth of the surface behind the focus's last point; 0 if in front
-  double rays = 0.0;         ///< rays that hit the focus
+  double rays = 0.0;         ///< rays that hit the focus, outside slots
+  double slotFraction = 0.0; ///< rays that hit it in slots, relative to `rays`
   double strictFraction = 0.0; ///< fraction of rays unoccluded within strictTolerance
   double halfVoxelFraction =
       0.0;                      ///< fraction unoccluded within half of the longest label voxel edge
@@ -79,6 +83,7 @@ private:
   void traceRays();
   void traceOutline();
   Edge findEdge(std::size_t in, std::size_t out) const;
+  bool isInSlot(const Point& point, const Surface& surface) const;
   bool isAtJump(const Point& point) const;
   bool isAtOutlineJump(const Point& point) const;
   std::size_t findNearestRay(const Vec2& raster) const;

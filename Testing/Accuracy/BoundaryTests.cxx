@@ -66,14 +66,14 @@ TEST(Boundary, ExactSurfaceGapIsBelowAThirdOfTheSpline) {
     const FocusView focus(field, view);
     const BoundaryMeasure spline = focus.measure(makeSurface(knee, view, "spline"));
     const BoundaryMeasure exact = focus.measure(makeSurface(knee, view, "exact"));
-    for (const BoundaryMeasure& measure : {spline, exact}) {
-      EXPECT_GT(measure.rays, 1e5);
-      EXPECT_LT(measure.centerGap, 1e-3);
-    }
+    EXPECT_GT(exact.rays, 1e5);
+    EXPECT_LT(spline.centerGap, 1e-3);
+    EXPECT_LT(exact.centerGap, strictTolerance) << "beside closed slots";
+    EXPECT_LT(exact.slotFraction, 0.01);
     EXPECT_LT(exact.gap.mean, 0.3 * spline.gap.mean);
     EXPECT_LT(exact.gap.p95, 0.3 * spline.gap.p95);
     EXPECT_LT(exact.gap.p95, 0.05);
-    EXPECT_LT(exact.gap.max, 0.2);
+    EXPECT_LT(exact.gap.max, 0.5) << "beside closed slots";
     EXPECT_GT(exact.strictFraction, 0.999);
     EXPECT_GT(exact.halfVoxelSmooth, 0.999);
     EXPECT_GT(exact.halfVoxelSmooth, spline.halfVoxelSmooth);

@@ -193,6 +193,54 @@ TEST(SilhouetteCells, OutlineShowsTheFocusAndStepsAtMostAVoxel) {
   EXPECT_LT(steps[steps.size() * 9 / 10], 3.0);
 }
 
+/// Two boxes, smoothed at their upper faces. The farther one is higher by half a voxel, or by
+/// `extra` voxels more.
+Mask makeBoxesBehindEachOther(int extra) {
+  Mask mask;
+  mask.grid = makeCenteredGrid({60, 60, 60});
+  mask.names = {"A"};
+  mask.maxValue = 255;
+  const auto fall = [](std::int64_t above, std::uint8_t first, std::uint8_t second) {
+    return above < 0    ? std::uint8_t{255}
+           : above == 0 ? first
+           : above == 1 ? second
+                        : std::uint8_t{0};
+  };
+  for (std::int64_t i = 0; i < mask.grid.size.prod(); ++i) {
+    const Size3 at(i % 60, i / 60 % 60, i / 3600);
+    const bool isWithin = at.x() >= 15 && at.x() < 45 && at.z() >= 20;
+    mask.voxels.push_back(!isWithin                     ? std::uint8_t{0}
+                          : at.y() >= 20 && at.y() < 27 ? fall(at.z() - 40, 115, 90)
+                          : at.y() >= 45 && at.y() < 52 ? fall(at.z() - 40 - extra, 150, 100)
+                                                        : std::uint8_t{0});
+  }
+  mask.count = mask.countInside();
+  return mask;
+}
+
+TEST(SilhouetteCells, NarrowSlotsAlongTheOutlineAreClosed) {
+  constexpr double near = 190.0, far = 215.0; // mm
+  for (const int extra : {0, 6}) {
+    const Mask focus = makeBoxesBehindEachOther(extra);
+    const ClippingSurface surface =
+        buildClippingSurface(makeAnteriorCamera(Projection::orthographic, 200.0, 12.0, 120, 120),
+                             Domain(focus.grid), focus, {.boundary = Boundary::exact});
+    const auto& clip = std::get<ClipDepth>(surface.clip);
+    for (double x = -8.0; x < 8.0; x += 0.7) {
+      EXPECT_NEAR(clip.surfaceDepth(Vec2(x, 8.0)), near, 1e-3);
+      EXPECT_NEAR(clip.surfaceDepth(Vec2(x, 10.7)), extra > 0 ? far : near,
+                  extra > 0 ? 1e-3 : 2.0) // the slope of the near box goes on
+          << "between the upper faces, at 10.4 and 10.9";
+    }
+    const auto countFocus = [](const FocusDepth& focus) {
+      return std::ranges::count(focus.regions, Region::focus);
+    };
+    const auto closed = countFocus(surface.focus) - countFocus(surface.shown);
+    EXPECT_GE(closed, extra > 0 ? 0 : 100);
+    EXPECT_LE(closed, extra > 0 ? 40 : 600) << "beside the step of the outline";
+  }
+}
+
 TEST(SilhouetteCells, ClipWeightEqualsThatOfTheFullSurface) {
   // clipWeight() evaluates only the part of the surface that affects its result.
   for (const Projection projection : projections)

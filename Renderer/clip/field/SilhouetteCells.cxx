@@ -148,10 +148,24 @@ struct QueryBatch {
 
 } // namespace
 
-SilhouetteCells::SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus)
-    : m_tracer(std::move(tracer)),
-      m_reference(focus.depth.reference()),
-      m_indices(focus.regions.size(), -1) {
+SilhouetteCells::SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, FocusDepth& focus)
+    : m_tracer(std::move(tracer)), m_reference(focus.depth.reference()) {
+  findCells(focus, {});
+  if (const Slots slots = findSlots(focus); !slots.empty()) {
+    for (const auto& [sample, limit] : slots) {
+      focus.regions[static_cast<std::size_t>(sample)] = Region::context;
+      focus.depth.set(sample, infinity);
+    }
+    findCells(focus, slots);
+  }
+}
+
+/// Finds the cells and the halo. No hit beyond a slot's limit counts in the cells around it.
+void SilhouetteCells::findCells(const FocusDepth& focus, const Slots& slots) {
+  m_indices.assign(focus.regions.size(), -1);
+  m_depthBounds.clear();
+  m_isInner.clear();
+  m_halo.clear();
   const Camera& camera = m_tracer->camera();
   const FocusCells& cells = m_tracer->cells();
   const CellRange range = findFocusRange(camera, focus.depth, cells);
@@ -159,17 +173,29 @@ SilhouetteCells::SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, cons
   const std::vector<Interval> outer =
       computeDepthBounds(camera, focus.depth, cells, range, isOuter);
   const std::vector<DepthBounds> inner = boundNeighborhoods(focus.depth, range);
+  const auto findLimit = [&](std::int64_t column, std::int64_t row) {
+    double limit = infinity;
+    for (const std::int64_t r : {row, row + 1})
+      for (const std::int64_t c : {column, column + 1})
+        if (const auto slot = slots.find(focus.depth.sample(c, r)); slot != slots.end())
+          limit = std::min(limit, slot->second);
+    return limit;
+  };
   for (std::int64_t row = range.top; row < range.bottom; ++row)
     for (std::int64_t column = range.left; column < range.right; ++column) {
       const std::size_t cell = range.at(column, row);
       if (isOuter[cell] && outer[cell].isEmpty())
         continue;
+      const double limit = slots.empty() ? infinity : findLimit(column, row);
+      if (isOuter[cell] && outer[cell].begin > limit)
+        continue;
       m_indices[static_cast<std::size_t>(focus.depth.sample(column, row))] =
           static_cast<std::int32_t>(m_depthBounds.size());
-      m_depthBounds.push_back(isOuter[cell]
-                                  ? DepthBounds{static_cast<float>(outer[cell].begin - m_reference),
-                                                static_cast<float>(outer[cell].end - m_reference)}
-                                  : inner[cell]);
+      m_depthBounds.push_back(
+          isOuter[cell]
+              ? DepthBounds{static_cast<float>(outer[cell].begin - m_reference),
+                            static_cast<float>(std::min(outer[cell].end, limit) - m_reference)}
+              : inner[cell]);
       m_isInner.push_back(!isOuter[cell]);
     }
   findHalo(focus, range);
@@ -216,20 +242,60 @@ void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) 
   smoothHalo(buffer);
 }
 
+double SilhouetteCells::voxelEdge() const {
+  const auto toWorld = m_tracer->cells().cellToWorld().linear();
+  double edge = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+    edge = std::max(edge, (toWorld * Vec3(Vec3::Unit(axis))).norm());
+  return edge;
+}
+
+/// Around each halo sample: the focus samples that are nearer to it than any focus at its depth, up
+/// to a voxel more. There must be such focus within `widest`: else the focus is not only a strip.
+SilhouetteCells::Slots SilhouetteCells::findSlots(const FocusDepth& focus) const {
+  const DepthBuffer& buffer = focus.depth;
+  const double tolerance = voxelEdge(), widest = std::min(voxelEdge(), 2.0); // mm
+  constexpr double mostSamples = 48.0; // bounds the time in close views
+  const auto radius =
+      static_cast<std::int64_t>(std::min(widest / std::abs(buffer.xAxis().pitch), mostSamples));
+  Slots slots;
+  std::vector<std::pair<std::int64_t, std::int64_t>> farther; // squared distance and sample
+  for (const HaloSample& halo : m_halo) {
+    const std::int64_t column = halo.sample % buffer.columns(),
+                       row = halo.sample / buffer.columns();
+    const double limit = halo.depth + tolerance;
+    std::int64_t nearest = radius * radius + 1; // squared distance of focus at the halo's depth
+    farther.clear();
+    for (std::int64_t y = -radius; y <= radius; ++y)
+      for (std::int64_t x = -radius; x <= radius; ++x) {
+        if (!focus.isFocus(column + x, row + y))
+          continue;
+        const std::int64_t sample = buffer.sample(column + x, row + y);
+        const std::int64_t distance = x * x + y * y;
+        if (buffer.at(sample) > limit)
+          farther.emplace_back(distance, sample);
+        else
+          nearest = std::min(nearest, distance);
+      }
+    for (const auto& [distance, sample] : farther)
+      if (distance < nearest && nearest <= radius * radius)
+        if (double& least = slots.try_emplace(sample, limit).first->second; limit < least)
+          least = limit;
+  }
+  return slots;
+}
+
 /// Replaces the halo's depths by their mean along the outline, with Gaussian weights of standard
 /// deviation 1.5 times the longest edge of the focus's voxels, from 2 to 16 samples. Depths that
 /// differ from the weighted median by more than four edges do not count: they belong to other parts
 /// of the focus.
 void SilhouetteCells::smoothHalo(const DepthBuffer& buffer) {
-  const auto toWorld = m_tracer->cells().cellToWorld().linear();
-  double voxelEdge = 0.0;
-  for (int axis = 0; axis < 3; ++axis)
-    voxelEdge = std::max(voxelEdge, (toWorld * Vec3(Vec3::Unit(axis))).norm());
-  const double sigma = std::clamp(1.5 * voxelEdge / std::abs(buffer.xAxis().pitch), 2.0, 16.0);
+  const double edge = voxelEdge();
+  const double sigma = std::clamp(1.5 * edge / std::abs(buffer.xAxis().pitch), 2.0, 16.0);
   const HaloSearch search(buffer, m_halo);
   std::vector<double> depths(m_halo.size());
   tbb::parallel_for(std::size_t{0}, m_halo.size(), [&](std::size_t i) {
-    depths[i] = averageNearMedian(search.collect(m_halo[i].sample, sigma), 4.0 * voxelEdge);
+    depths[i] = averageNearMedian(search.collect(m_halo[i].sample, sigma), 4.0 * edge);
   });
   for (std::size_t i = 0; i < m_halo.size(); ++i)
     m_halo[i].depth = depths[i];

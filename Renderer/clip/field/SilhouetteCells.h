@@ -21,6 +21,11 @@
 //         silhouette    |                        1/4 - -/- - -\- - -   captureThreshold
 //      filled surface   | exact                     ___/       \____
 //
+// A slot is a strip of the focus along its outline, narrower than a voxel, that lies farther away
+// than both the focus beside it and the surface at its outline: the rim of a farther part of the
+// focus behind a nearer one. As a part of the outline it would be a dark, deep groove. Slots are
+// closed: they count as context, and no part of the focus beyond them as a hit.
+//
 // The depth bounds of a cell contain all depths at which its rays can hit the focus; points outside
 // them need no query. In an inner cell, where all samples are focus, they are the depth range of
 // the samples around it, extended away from the camera to twice its length. Spikes and pits that
@@ -28,13 +33,16 @@
 
 #include "clip/focus/FocusDepth.h"
 
+#include <unordered_map>
+
 namespace fenestra::core {
 
 struct CellRange;
 
 class SilhouetteCells {
 public:
-  SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus);
+  /// Closes the slots of `focus`: their samples become context.
+  SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, FocusDepth& focus);
 
   /// Sample beside the focus whose ray has a maximum.
   struct HaloSample {
@@ -81,6 +89,12 @@ public:
   static constexpr std::size_t maxQueries = 16;
 
 private:
+  /// Samples of the focus in slots, and the depth, mm, beyond which it is ignored in their cells.
+  using Slots = std::unordered_map<std::int64_t, double>;
+
+  void findCells(const FocusDepth& focus, const Slots& slots);
+  Slots findSlots(const FocusDepth& focus) const;
+  double voxelEdge() const; ///< the longest edge of the focus's voxels, mm
   Interval joinDepthBounds(const DepthBuffer& buffer, std::int64_t column, std::int64_t row) const;
   void findHalo(const FocusDepth& focus, const CellRange& range);
   void smoothHalo(const DepthBuffer& buffer);

@@ -220,7 +220,8 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   checkOptions(options);
   Stopwatch stopwatch;
   const auto tracer = std::make_shared<const FocusTracer>(camera, volume, focus);
-  ClippingSurface surface{.clip = {}, .focus = tracer->traceDepths()};
+  const FocusDepth focusDepth = tracer->traceDepths();
+  ClippingSurface surface{.clip = {}, .focus = focusDepth, .shown = focusDepth};
   requireVisible(surface.focus, focus);
   if (!isInViewport(surface.focus))
     surface.warnings.push_back(
@@ -234,8 +235,9 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   } else if (options.mode == SurfaceMode::hole) {
     fillHole(*buffer, surface.focus, camera, options.hole);
   } else if (options.boundary == Boundary::exact) {
-    silhouette = std::make_shared<SilhouetteCells>(tracer, surface.focus);
-    fillFromHalo(*buffer, surface.focus, *silhouette, computeLevelingLength(volume));
+    silhouette = std::make_shared<SilhouetteCells>(tracer, surface.shown);
+    *buffer = surface.shown.depth;
+    fillFromHalo(*buffer, surface.shown, *silhouette, computeLevelingLength(volume));
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
     surface.splineSeconds = stopwatch.lap();

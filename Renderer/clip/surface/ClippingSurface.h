@@ -39,8 +39,9 @@ struct SurfaceOptions {
 };
 
 struct ClippingSurface {
-  Clip clip;                                 ///< a ClipDepth
-  FocusDepth focus;                          ///< over the samples of the clip's buffer
+  Clip clip;        ///< a ClipDepth
+  FocusDepth focus; ///< over the samples of the clip's buffer
+  FocusDepth shown; ///< the focus without slots (SilhouetteCells.h), which the clip follows
   std::vector<ControlPoint> controlPoints{}; ///< empty unless the boundary is a spline
   /// Spline f only: |f(x) - z|, mm, at the focus samples on the contours, at x with depth z.
   std::optional<Distribution> mismatch{};
