@@ -14,16 +14,10 @@ namespace fenestra::core {
 struct InputRegistry::Content {
   std::mutex mutex;
   std::map<FileId, std::filesystem::path> inputs;
-  std::map<std::filesystem::path, FileId> results;
 
   void addInput(const FileId& file, const std::filesystem::path& path) {
     const std::lock_guard lock(mutex);
     inputs.try_emplace(file, path);
-  }
-  bool isResult(const FileId& file) {
-    const std::lock_guard lock(mutex);
-    return std::any_of(results.begin(), results.end(),
-                       [&file](const auto& result) { return result.second == file; });
   }
 };
 
@@ -114,9 +108,6 @@ void requireFile(const std::filesystem::path& path, const std::string& hint,
   if (const int error = findReadError(path); error != 0)
     throw readError(path, error, "check its permissions");
   const std::optional<FileId> file = registry ? fileId(path) : std::nullopt;
-  if (file && registry.load()->isResult(*file))
-    throw inputError(ErrorCode::outputConflict, path,
-                     "is a result of this command; name another file");
   if (file)
     registry.load()->addInput(*file, path);
 }
@@ -162,21 +153,6 @@ void unregisterInput(const FileId& file) {
   if (InputRegistry::Content* const content = registry) {
     const std::lock_guard lock(content->mutex);
     content->inputs.erase(file);
-  }
-}
-
-void registerResult(const std::filesystem::path& path) {
-  if (InputRegistry::Content* const content = registry) {
-    const std::lock_guard lock(content->mutex);
-    if (const auto file = fileId(path))
-      content->results[path] = *file;
-  }
-}
-
-void unregisterResult(const std::filesystem::path& path) {
-  if (InputRegistry::Content* const content = registry) {
-    const std::lock_guard lock(content->mutex);
-    content->results.erase(path);
   }
 }
 

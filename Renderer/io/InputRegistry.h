@@ -13,9 +13,9 @@
 
 namespace fenestra::core {
 
-/// Files that this process has read, and results that it has put in place, during the object's
-/// life: that of a program (program/Process). At most one exists. Without one, as in programs that
-/// use Fenestra as a library, no file is registered: a file may be read, replaced and read again.
+/// Files that this process has read during the object's life: that of a program (program/Process).
+/// At most one exists. Without one, as in programs that use Fenestra as a library, no file is
+/// registered: a file may be read, replaced and read again.
 class InputRegistry {
 public:
   InputRegistry();
@@ -41,8 +41,8 @@ struct FolderContent {
 FolderContent listFolder(const std::filesystem::path& folder);
 
 /// Registers `path` as an input. Throws Error (input) unless `path` is a readable file of at most
-/// `maxBytes` bytes, inside the folder of an InputConfinement if there is one, and not a registered
-/// result. `hint`: advice in the message if `path` is a folder.
+/// `maxBytes` bytes, inside the folder of an InputConfinement if there is one. `hint`: advice in
+/// the message if `path` is a folder.
 void requireFile(const std::filesystem::path& path, const std::string& hint,
                  std::uint64_t maxBytes = UINT64_MAX);
 
@@ -71,10 +71,6 @@ std::optional<std::filesystem::path> findInput(const FileId& file);
 /// Removes a file from the registry: one that this process has just created (an input that had its
 /// inode number is gone), or that is read only to be written again.
 void unregisterInput(const FileId& file);
-
-/// Registers the result at `path`: requireFile refuses that file until unregisterResult.
-void registerResult(const std::filesystem::path& path);
-void unregisterResult(const std::filesystem::path& path);
 
 /// The last extension with its dot, in lower case: ".GZ" of "a.nii.GZ" is ".gz".
 std::string lowercaseExtension(const std::filesystem::path& path);

@@ -70,10 +70,7 @@ struct Outputs::Result {
 
 Outputs::Outputs() = default;
 
-Outputs::~Outputs() {
-  for (const auto& [path, result] : m_results)
-    unregisterResult(result->target);
-}
+Outputs::~Outputs() = default;
 
 void Outputs::add(const fs::path& path, const IsOwnFile& isOwnFile) {
   auto result = std::make_unique<Result>();
@@ -151,7 +148,6 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
       ++placed;
       if (const auto after = result->id())
         placedIds.insert(*after);
-      registerResult(result->target);
     }
   } catch (...) {
     while (placed > 0)
