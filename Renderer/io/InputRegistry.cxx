@@ -4,26 +4,16 @@
 #include "io/platform/SystemErrors.h"
 
 #include <algorithm>
-#include <atomic>
 #include <map>
 #include <mutex>
 #include <utility>
 
 namespace fenestra::core {
 
-struct InputRegistry::Content {
-  std::mutex mutex;
-  std::map<FileId, std::filesystem::path> inputs;
-
-  void addInput(const FileId& file, const std::filesystem::path& path) {
-    const std::lock_guard lock(mutex);
-    inputs.try_emplace(file, path);
-  }
-};
-
 namespace {
 
-std::atomic<InputRegistry::Content*> registry = nullptr; ///< null: there is none
+std::mutex mutex;                                          ///< of `inputs` and its content
+std::map<FileId, std::filesystem::path>* inputs = nullptr; ///< of the registry; null: none
 
 /// Canonical folder to which this thread's reads are confined; null: not confined. A pointer, since
 /// a thread_local object with a destructor ends the process if memory runs out.
@@ -44,6 +34,12 @@ std::filesystem::file_type getFileType(const std::filesystem::path& path) {
   return type;
 }
 
+void addInput(const std::filesystem::path& path) {
+  const std::lock_guard lock(mutex);
+  if (const auto file = inputs ? fileId(path) : std::nullopt)
+    inputs->try_emplace(*file, path);
+}
+
 /// True for names that system calls would truncate at a zero byte.
 bool hasZeroByte(const std::filesystem::path& path) {
   return path.native().find('\0') != std::string::npos;
@@ -51,12 +47,14 @@ bool hasZeroByte(const std::filesystem::path& path) {
 
 } // namespace
 
-InputRegistry::InputRegistry() : m_content(std::make_unique<Content>()) {
-  registry = m_content.get();
+InputRegistry::InputRegistry() {
+  const std::lock_guard lock(mutex);
+  inputs = &m_inputs;
 }
 
 InputRegistry::~InputRegistry() {
-  registry = nullptr;
+  const std::lock_guard lock(mutex);
+  inputs = nullptr;
 }
 
 bool fileExists(const std::filesystem::path& path) {
@@ -107,27 +105,21 @@ void requireFile(const std::filesystem::path& path, const std::string& hint,
                      " MB; use a smaller file");
   if (const int error = findReadError(path); error != 0)
     throw readError(path, error, "check its permissions");
-  const std::optional<FileId> file = registry ? fileId(path) : std::nullopt;
-  if (file)
-    registry.load()->addInput(*file, path);
+  addInput(path);
 }
 
 void registerInput(const std::filesystem::path& path) {
-  const auto addFile = [](const std::filesystem::path& file) {
-    if (const std::optional<FileId> id = fileId(file))
-      registry.load()->addInput(*id, file);
-  };
-  if (!registry || hasZeroByte(path))
+  if (hasZeroByte(path))
     return;
   std::error_code failed;
   const auto type = std::filesystem::status(path, failed).type();
   if (type == std::filesystem::file_type::regular)
-    addFile(path);
+    addInput(path);
   else if (type == std::filesystem::file_type::directory)
     for (std::filesystem::directory_iterator entry(path, failed), end; !failed && entry != end;
          entry.increment(failed))
       if (entry->is_regular_file(failed))
-        addFile(entry->path());
+        addInput(entry->path());
 }
 
 InputConfinement::InputConfinement(const std::optional<std::filesystem::path>& folder) {
@@ -141,19 +133,14 @@ InputConfinement::~InputConfinement() {
 }
 
 std::optional<std::filesystem::path> findInput(const FileId& file) {
-  InputRegistry::Content* const content = registry;
-  if (!content)
-    return std::nullopt;
-  const std::lock_guard lock(content->mutex);
-  const auto found = content->inputs.find(file);
-  return found == content->inputs.end() ? std::nullopt : std::optional(found->second);
+  const std::lock_guard lock(mutex);
+  return inputs && inputs->contains(file) ? std::optional(inputs->at(file)) : std::nullopt;
 }
 
 void unregisterInput(const FileId& file) {
-  if (InputRegistry::Content* const content = registry) {
-    const std::lock_guard lock(content->mutex);
-    content->inputs.erase(file);
-  }
+  const std::lock_guard lock(mutex);
+  if (inputs)
+    inputs->erase(file);
 }
 
 std::string lowercaseExtension(const std::filesystem::path& path) {

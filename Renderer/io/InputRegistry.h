@@ -6,7 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,10 +23,8 @@ public:
   InputRegistry(const InputRegistry&) = delete;
   InputRegistry& operator=(const InputRegistry&) = delete;
 
-  struct Content;
-
 private:
-  std::unique_ptr<Content> m_content;
+  std::map<FileId, std::filesystem::path> m_inputs;
 };
 
 /// True if a file or folder exists at `path`; isFolder: if it is a folder. Links are followed.
