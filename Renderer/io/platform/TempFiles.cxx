@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <random>
 
@@ -52,7 +53,7 @@ Descriptor lockStaleFile(const std::filesystem::path& path, TempFileGuard::Kind 
   return isCandidate && ::flock(*file, LOCK_EX | LOCK_NB) == 0 ? std::move(file) : Descriptor();
 }
 
-static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
 std::atomic<int> blockingThreads = 0;           ///< number of threads with a SignalBlocker
 std::atomic<void (*)()> endRequested = nullptr; ///< set by a signal handler; null: none
@@ -80,51 +81,37 @@ bool isTempName(std::string_view name, std::string_view prefix) {
          name == appendChecksum(std::string(name.substr(0, prefix.size() + digitCount)));
 }
 
-/// Entry of the registry, a list. Entries are reused, never freed: a signal handler may walk the
-/// list at any time.
 struct TempFileGuard::Entry {
-  std::filesystem::path path; ///< constant while registered
-  Kind kind = Kind::file;
-  std::atomic<bool> isTaken = false;
-  std::atomic<bool> isRegistered = false;
-  Entry* next = nullptr;
-
-  static std::atomic<Entry*> first;
-
-  /// Takes an unused entry, or creates one.
-  static Entry* take() {
-    for (Entry* entry = first; entry; entry = entry->next)
-      if (!entry->isTaken.exchange(true))
-        return entry;
-    auto* entry = new Entry;
-    entry->isTaken = true;
-    entry->next = first;
-    while (!first.compare_exchange_weak(entry->next, entry))
-      ;
-    return entry;
-  }
+  std::filesystem::path path;
+  Kind kind;
+  bool isRegistered = true;
 
   bool remove() const {
     return (kind == Kind::folder ? ::rmdir(path.c_str()) : ::unlink(path.c_str())) == 0;
   }
   bool exists() const { return ::access(path.c_str(), F_OK) == 0 || !isNotFound(errno); }
+
+  /// The registry. It changes only while a SignalBlocker exists, so that a signal handler, which
+  /// runs without any, finds it unchanging.
+  static std::list<Entry> all;
+  static std::mutex mutex; ///< for changes to `all`
 };
 
-std::atomic<TempFileGuard::Entry*> TempFileGuard::Entry::first = nullptr;
+std::list<TempFileGuard::Entry> TempFileGuard::Entry::all;
+std::mutex TempFileGuard::Entry::mutex;
 
 TempFileGuard::TempFileGuard(const std::filesystem::path& path, Kind kind) {
-  std::filesystem::path copy = path; // may throw, before an entry is taken
-  m_entry = Entry::take();
-  m_entry->path = std::move(copy);
-  m_entry->kind = kind;
-  m_entry->isRegistered = true;
+  const SignalBlocker blocker;
+  const std::lock_guard lock(Entry::mutex);
+  m_entry = Entry::all.insert(Entry::all.end(), {path, kind});
 }
 
 TempFileGuard::~TempFileGuard() {
+  const SignalBlocker blocker;
+  const std::lock_guard lock(Entry::mutex);
   if (m_entry->isRegistered && !m_entry->remove() && !isNotFound(errno))
     return; // stays registered: removal is tried again when the process ends
-  m_entry->isRegistered = false;
-  m_entry->isTaken = false;
+  Entry::all.erase(m_entry);
 }
 
 const std::filesystem::path& TempFileGuard::path() const {
@@ -132,6 +119,7 @@ const std::filesystem::path& TempFileGuard::path() const {
 }
 
 void TempFileGuard::release() {
+  const SignalBlocker blocker;
   m_entry->isRegistered = false;
 }
 
@@ -156,22 +144,18 @@ void removeStaleTempFiles(const std::filesystem::path& folder, std::string_view 
 }
 
 void removeAllTempFiles() {
-  for (const auto* entry = TempFileGuard::Entry::first.load(); entry; entry = entry->next)
-    if (entry->isRegistered && entry->kind == TempFileGuard::Kind::file)
-      entry->remove();
-  for (bool isDone = false; !isDone;) { // nested folders: repeat until none can be removed
-    isDone = true;
-    for (const auto* entry = TempFileGuard::Entry::first.load(); entry; entry = entry->next)
-      if (entry->isRegistered && entry->kind == TempFileGuard::Kind::folder && entry->remove())
-        isDone = false;
-  }
+  for (const auto kind : {TempFileGuard::Kind::file, TempFileGuard::Kind::folder})
+    for (auto entry = TempFileGuard::Entry::all.rbegin(); entry != TempFileGuard::Entry::all.rend();
+         ++entry)
+      if (entry->isRegistered && entry->kind == kind)
+        entry->remove();
 }
 
 std::vector<std::filesystem::path> remainingTempFiles() {
   std::vector<std::filesystem::path> paths;
-  for (const auto* entry = TempFileGuard::Entry::first.load(); entry; entry = entry->next)
-    if (entry->isRegistered && entry->exists())
-      paths.push_back(entry->path);
+  for (const auto& entry : TempFileGuard::Entry::all)
+    if (entry.isRegistered && entry.exists())
+      paths.push_back(entry.path);
   return paths;
 }
 

@@ -4,6 +4,7 @@
 // which uses Fenestra as a library, leaves the files of a killed process to the next run.
 
 #include <filesystem>
+#include <list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,7 +44,7 @@ private:
   friend void removeAllTempFiles();
   friend std::vector<std::filesystem::path> remainingTempFiles();
 
-  Entry* m_entry;
+  std::list<Entry>::iterator m_entry;
 };
 
 /// Removes temporary files or folders that killed runs of this user have left in `folder` and no
@@ -52,8 +53,8 @@ private:
 void removeStaleTempFiles(const std::filesystem::path& folder, std::string_view prefix,
                           TempFileGuard::Kind kind);
 
-/// Removes every registered name: files, then folders from the inside out. Async-signal-safe:
-/// system calls only.
+/// Removes every registered name: files, then folders from the inside out. For a signal handler
+/// that endWhenUnblocked calls, and for the end of a process without other threads.
 void removeAllTempFiles();
 
 /// Registered names that still exist, for a message to the user.
