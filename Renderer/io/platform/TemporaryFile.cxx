@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdio>
 #include <fcntl.h>
-#include <fstream>
 #include <sys/xattr.h>
 
 namespace fenestra::core {
@@ -13,19 +12,6 @@ namespace {
 
 std::filesystem::path makeSiblingName(const std::filesystem::path& target) {
   return target.parent_path() / makeTempName(tempFilePrefix);
-}
-
-/// Mode of a new file: 0666 less umask. umask(2) could only read it by changing it, also for files
-/// that other threads create meanwhile.
-mode_t getDefaultMode() {
-  constexpr std::string_view field = "Umask:";
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with(field))
-      return 0666 & ~static_cast<mode_t>(std::stoul(line.substr(field.size()), nullptr, 8));
-  const mode_t mask = ::umask(077); // kernels before 4.7
-  ::umask(mask);
-  return 0666 & ~mask;
 }
 
 /// Copies the access control list (acl(5)), if any, from `from` to `to`. False: cannot be set.
@@ -55,13 +41,16 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(tar
 }
 
 /// Creates the file, then locks it. Creates another if a later run has removed it in between as
-/// stale.
+/// stale. A new file gets its final mode from the umask; one that replaces another is private until
+/// finish().
 void TemporaryFile::open() {
+  struct stat before = {};
+  const mode_t mode = ::lstat(m_target.c_str(), &before) == 0 ? 0600 : 0666;
   for (;;) {
     const SignalBlocker blocker;
     m_name.emplace(makeSiblingName(m_target), TempFileGuard::Kind::file);
-    m_file = Descriptor(retryOnEintr([this] {
-      return ::open(m_name->path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    m_file = Descriptor(retryOnEintr([&] {
+      return ::open(m_name->path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     }));
     if (!m_file.isOpen() && errno == EEXIST)
       m_name->release(); // another process's file
@@ -75,19 +64,16 @@ void TemporaryFile::write(std::string_view content) {
 }
 
 void TemporaryFile::finish(Durability durability) {
-  mode_t mode = getDefaultMode();
   struct stat before = {};
-  const bool targetExists = ::lstat(m_target.c_str(), &before) == 0;
-  if (targetExists) {
+  if (::lstat(m_target.c_str(), &before) == 0) {
     const bool isOwned = ::fchown(*m_file, before.st_uid, before.st_gid) == 0;
     const bool hasSameGroup = isOwned || ::fchown(*m_file, uid_t(-1), before.st_gid) == 0;
-    mode = inheritMode(before, hasSameGroup);
+    const mode_t mode = inheritMode(before, hasSameGroup);
+    const mode_t ownerOnly = mode & 0700; // the mode's group bits are the ACL's mask
+    if (retryOnEintr([&] { return ::fchmod(*m_file, mode); }) != 0 ||
+        (!copyAccessList(m_target, *m_file) && ::fchmod(*m_file, ownerOnly) != 0))
+      throw writeError(m_target, errno);
   }
-  if (retryOnEintr([&] { return ::fchmod(*m_file, mode); }) != 0)
-    throw writeError(m_target, errno);
-  const mode_t ownerOnly = mode & 0700; // the mode's group bits are the ACL's mask
-  if (targetExists && !copyAccessList(m_target, *m_file) && ::fchmod(*m_file, ownerOnly) != 0)
-    throw writeError(m_target, errno);
   if (durability == Durability::synced && retryOnEintr([&] { return ::fsync(*m_file); }) != 0 &&
       errno != EINVAL)
     throw writeError(m_target, errno);

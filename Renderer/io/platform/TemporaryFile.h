@@ -17,8 +17,8 @@ enum class Durability { synced, none }; ///< synced: on the disk before the func
 /// folder removes such files after SIGKILL.
 class TemporaryFile {
 public:
-  /// Creates an empty file, accessible to its owner alone, in the folder of `target`. Throws Error
-  /// (output), which names `target`.
+  /// Creates an empty file in the folder of `target`, accessible to its owner alone if `target`
+  /// exists. Throws Error (output), which names `target`.
   explicit TemporaryFile(const std::filesystem::path& target);
 
   std::optional<FileId> id() const { return fileId(*m_file); }
@@ -26,8 +26,8 @@ public:
   /// Appends. Throws Error (output), also if the disk is full.
   void write(std::string_view content);
 
-  /// Sets mode, owner and access control list to those of the file at `target`, or of a new file.
-  /// If owner or group cannot be set, no user gains rights. Throws Error (output).
+  /// Sets mode, owner and access control list to those of the file at `target`, if any. If owner or
+  /// group cannot be set, no user gains rights. Throws Error (output).
   void finish(Durability durability);
 
   /// Renames this file to `target`. An existing target gets the temporary name, and is removed with
