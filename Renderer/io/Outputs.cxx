@@ -86,8 +86,7 @@ void Outputs::add(const fs::path& path, const IsOwnFile& isOwnFile) {
   }
   requireNotInput(path, result->id());
   const std::optional<FileId> id = result->id();
-  const std::optional<FileId> parent = fileId(result->target.parent_path());
-  if ((parent && !m_targets.emplace(*parent, result->target.filename().string()).second) ||
+  if (!m_targets.insert(result->stream ? path : result->target).second ||
       (id && !m_files.insert(*id).second))
     throw duplicateError(path);
   if (!result->stream && m_folders.insert(result->target.parent_path()).second) {

@@ -78,9 +78,9 @@ private:
   void place(const std::vector<Result*>& files, Durability durability);
 
   std::map<std::filesystem::path, std::unique_ptr<Result>> m_results; ///< by the name given to add
-  std::set<std::pair<FileId, std::string>> m_targets; ///< folder and name of all results
-  std::set<FileId> m_files;                           ///< existing files of declared names
-  std::set<std::filesystem::path> m_folders;          ///< folders in which files can be created
+  std::set<std::filesystem::path> m_targets; ///< of all results; the path of a stream
+  std::set<FileId> m_files;                  ///< existing files of declared names
+  std::set<std::filesystem::path> m_folders; ///< folders in which files can be created
 };
 
 } // namespace fenestra::core

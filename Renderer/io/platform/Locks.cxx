@@ -5,7 +5,6 @@
 #include "io/platform/SystemErrors.h"
 
 #include <chrono>
-#include <map>
 #include <thread>
 
 #include <fcntl.h>
@@ -21,18 +20,13 @@ void sleepBriefly() {
 
 std::vector<Descriptor> lockFolders(const std::set<std::filesystem::path>& folders) {
   constexpr double maxSeconds = 2.0; // s; a script may lock the folder while it runs Fenestra
-  std::map<FileId, std::filesystem::path> ordered; // so that two runs cannot deadlock
-  for (const std::filesystem::path& folder : folders)
-    if (const auto id = fileId(folder))
-      ordered.emplace(*id, folder);
   std::vector<Descriptor> locks;
   const Stopwatch watch;
-  for (const auto& [id, folder] : ordered) {
-    Descriptor file(retryOnEintr(
-        [&path = folder] { return ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }));
-    if (!file.isOpen())
-      continue;
-    while (!tryLock(file) && watch.seconds() < maxSeconds)
+  for (const std::filesystem::path& folder :
+       folders) { // in order, so that two runs do not deadlock
+    Descriptor file(
+        retryOnEintr([&] { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }));
+    while (file.isOpen() && !tryLock(file) && watch.seconds() < maxSeconds)
       sleepBriefly();
     locks.push_back(std::move(file));
   }

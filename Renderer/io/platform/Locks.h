@@ -12,9 +12,9 @@
 
 namespace fenestra::core {
 
-/// Locks folders, so that the results that two runs place there do not mix. Placing takes
-/// milliseconds: after 2 s of waiting the caller proceeds without the lock. Folders that cannot be
-/// read are skipped.
+/// Locks folders (canonical paths), so that the results that two runs place there do not mix.
+/// Placing takes milliseconds: after 2 s of waiting the caller proceeds without the lock. Folders
+/// that cannot be read are skipped.
 std::vector<Descriptor> lockFolders(const std::set<std::filesystem::path>& folders);
 
 /// Lock on a result's name, held by one process at a time, for results that take long to write.
