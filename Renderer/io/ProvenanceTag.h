@@ -16,8 +16,9 @@ inline constexpr std::string_view blankProvenanceTag = "Written by Fenestra 0000
 /// Replaces the zeros of the last placeholder in `content`.
 std::string sealProvenanceTag(std::string content);
 
-/// True if one of the file's last 4 tags has the right checksum; false also if the file cannot be
-/// read. Reads in blocks: constant memory, time linear in the file's size.
+/// True if one of the file's last 4 tags has the right checksum; Fenestra's files have their own
+/// tag last, after those of files that they contain. False also if the file cannot be read, or is
+/// larger than a quarter of the memory.
 bool hasProvenanceTag(const std::filesystem::path& path);
 
 } // namespace fenestra::core
