@@ -104,8 +104,7 @@ void addSmoothing(Json& json, const PreparedScene& scene) {
            {"strength", smoothing->strength},
            {"method", !smoothing->isApplied()    ? "none"
                       : smoothing->isLogarithmic ? "non-local means of logarithms"
-                                                 : "non-local means"},
-           {"reused", smoothing->isReused}};
+                                                 : "non-local means"}};
   if (!smoothing->isApplied())
     return;
   entry["islands"] = {{"count", smoothing->islands}, {"mm3", smoothing->islandVolume}};

@@ -3,7 +3,6 @@
 
 #include "io/platform/Descriptor.h"
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,19 +10,14 @@
 
 namespace fenestra::core {
 
-/// Child process with default signal handlers, at most one file of this process, no standard input,
-/// standard output discarded and standard error recorded. Signals of the terminal do not reach it.
+/// Child process with default signal handlers, no file of this process, no standard input, standard
+/// output discarded and standard error recorded. Signals of the terminal do not reach it.
 /// The kernel kills it when the thread that created it ends.
 class ChildProcess {
 public:
-  /// Descriptor by which the child has the file that it inherits.
-  static constexpr int inheritedFile = 3;
-
   /// Runs `fenestra arguments…`. The child ends with `failureStatus` if it cannot execute the
-  /// program. `inherited`: a file that it inherits, or null. Throws Error (output) if no process
-  /// can be started.
-  ChildProcess(std::vector<std::string> arguments, int failureStatus,
-               const Descriptor* inherited = nullptr);
+  /// program. Throws Error (output) if no process can be started.
+  ChildProcess(std::vector<std::string> arguments, int failureStatus);
   /// Kills the process if it still runs.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;

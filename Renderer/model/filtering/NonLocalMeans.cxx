@@ -192,8 +192,7 @@ LargeArray<Voxel> filterVoxels(const Volume& volume, const LargeArray<Voxel>& vo
   return Filter<Voxel>(volume, voxels, filter).run();
 }
 
-} // namespace
-
+/// Copy of a volume without its voxels and their range.
 Volume copyWithoutVoxels(const Volume& volume) {
   return {.grid = volume.grid,
           .voxels = {},
@@ -202,6 +201,8 @@ Volume copyWithoutVoxels(const Volume& volume) {
           .modality = volume.modality,
           .hasContrastAgent = volume.hasContrastAgent};
 }
+
+} // namespace
 
 Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter) {
   constexpr double leastStrength = 1e-12; // of the range: squares of differences stay finite
