@@ -203,6 +203,16 @@ TEST_F(OutputFiles, ReplacedFileKeepsModeAndOwner) {
   EXPECT_EQ(readMode(folder / "fresh"), readMode(usual));
 }
 
+TEST_F(OutputFiles, ReplacementOfAPrivateFileIsPrivateMeanwhile) {
+  folder.write("private", "old");
+  ::chmod((folder / "private").c_str(), 0600);
+  outputs.add(folder / "private");
+  outputs.write(folder / "private", "new");
+  EXPECT_EQ(fileCount(), 2u);
+  for (const auto& entry : fs::directory_iterator(folder.path()))
+    EXPECT_EQ(readMode(entry.path()), 0600u) << entry.path();
+}
+
 TEST_F(OutputFiles, DefaultNameReplacesOnlyTaggedFiles) {
   folder.write("theirs", "file of another program");
   const std::string ours = sealProvenanceTag("x " + std::string(blankProvenanceTag) + "12345 y");
