@@ -4,6 +4,7 @@
 #include "base/Error.h"
 #include "io/MessageText.h"
 #include "io/platform/ChildProcess.h"
+#include "io/platform/SharedSlot.h"
 #include "program/BatchResults.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
@@ -126,7 +127,8 @@ private:
     auto arguments = manifest->arguments(countThreads(worker));
     m_workers[worker].reset(
         new Worker{row, std::move(manifest),
-                   ChildProcess(std::move(arguments), exitStatus(ErrorKind::output))});
+                   ChildProcess(std::move(arguments), exitStatus(ErrorKind::output),
+                                &m_smoothedVolume.file())});
   }
 
   void finishWorker(std::size_t index) {
@@ -214,6 +216,7 @@ private:
   ProgressView m_view;
   std::vector<std::size_t> m_rows; ///< of this run
   std::vector<std::unique_ptr<Worker>> m_workers;
+  SharedSlot m_smoothedVolume;                           ///< of the last row that smoothed one
   std::size_t m_next = 0, m_skipped = 0, m_rendered = 0; ///< next row; rows done before, done now
   double m_seconds = 0.0;                                ///< sum over the rows done now
   std::atomic<bool> m_stop = false;

@@ -104,7 +104,8 @@ void addSmoothing(Json& json, const PreparedScene& scene) {
            {"strength", smoothing->strength},
            {"method", !smoothing->isApplied()    ? "none"
                       : smoothing->isLogarithmic ? "non-local means of logarithms"
-                                                 : "non-local means"}};
+                                                 : "non-local means"},
+           {"reused", smoothing->isReused}};
   if (!smoothing->isApplied())
     return;
   entry["islands"] = {{"count", smoothing->islands}, {"mm3", smoothing->islandVolume}};

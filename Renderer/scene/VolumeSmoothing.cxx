@@ -2,6 +2,8 @@
 
 #include "base/PhysicalMemory.h"
 #include "base/TextStream.h"
+#include "io/Digest.h"
+#include "io/platform/SharedSlot.h"
 #include "model/filtering/Islands.h"
 #include "model/filtering/NoiseEstimate.h"
 #include "model/filtering/NonLocalMeans.h"
@@ -71,6 +73,50 @@ SmoothedVolume filterVolume(const Volume& volume, const SmoothingRequest& reques
   return result;
 }
 
+template <typename Array>
+auto bytesOf(Array& voxels) {
+  using Byte = std::conditional_t<std::is_const_v<Array>, const char, char>;
+  return std::span(reinterpret_cast<Byte*>(voxels.data()), voxels.size() * sizeof(voxels[0]));
+}
+
+/// Digest of all that the result of filterVolume() depends on.
+std::uint64_t computeKey(const Volume& volume, const SmoothingRequest& request, Modality modality) {
+  constexpr int exact = 17; // significant digits
+  const Grid& grid = volume.grid;
+  Digest digest;
+  digest.add(concat(joinNumbers(grid.size.cast<double>(), ",", exact), ' ',
+                    joinNumbers(grid.spacing(), ",", exact), ' ', volume.voxels.index(), ' ',
+                    static_cast<int>(modality), ' ', static_cast<int>(request.kind), ' ',
+                    toString(request.noise, exact)));
+  std::visit(
+      [&](const auto& voxels) {
+        const auto bytes = bytesOf(voxels);
+        digest.add({bytes.data(), bytes.size()});
+      },
+      volume.voxels);
+  return digest.value();
+}
+
+/// Result that another row of the batch has stored; nullopt: none.
+std::optional<SmoothedVolume> readResult(const SharedSlot& slot, std::uint64_t key,
+                                         const Volume& volume, Modality modality) {
+  Volume smoothed = copyWithoutVoxels(volume);
+  const auto numbers = std::visit(
+      [&]<typename Array>(const Array& voxels) {
+        return slot.read(key, bytesOf(smoothed.voxels.emplace<Array>(voxels.size())));
+      },
+      volume.voxels);
+  if (!numbers)
+    return std::nullopt;
+  computeRange(smoothed);
+  return SmoothedVolume{{{std::move(smoothed)}},
+                        {.noise = numbers->at(0),
+                         .strength = numbers->at(1),
+                         .isReused = true,
+                         .isLogarithmic = modality == Modality::us,
+                         .isHounsfield = modality == Modality::ct}};
+}
+
 /// True for runs with a voxel in the focus, which must not vanish.
 class FocusOverlap {
 public:
@@ -115,7 +161,20 @@ SmoothedVolume smoothVolume(const VolumeHandle& read, const SmoothingRequest& re
   const Volume& volume = read->volume;
   if (const auto problem = findMemoryProblem(volume))
     return {.warnings = {*problem}};
-  return filterVolume(volume, request, modality);
+  const auto slot = SharedSlot::findInherited();
+  if (!slot)
+    return filterVolume(volume, request, modality);
+  const std::uint64_t key = computeKey(volume, request, modality);
+  if (auto reused = readResult(*slot, key, volume, modality))
+    return std::move(*reused);
+  SmoothedVolume result = filterVolume(volume, request, modality);
+  if (result.input)
+    std::visit(
+        [&](const auto& voxels) {
+          slot->write(key, {result.report.noise, result.report.strength}, bytesOf(voxels));
+        },
+        result.input->volume.voxels);
+  return result;
 }
 
 SmoothedVolume dropIslands(const VolumeHandle& smoothed, const Handle<TransferChoice>& transfer,

@@ -10,6 +10,7 @@ namespace fenestra::core {
 struct SmoothingReport {
   double noise = 0.0;         ///< standard deviation, scalar units
   double strength = 0.0;      ///< of the filter, scalar units; 0: little noise, unchanged volume
+  bool isReused = false;      ///< another row of a batch had smoothed the same volume
   bool isLogarithmic = false; ///< both numbers, and the filter, apply to log(1 + scalar - minimum)
   bool isHounsfield = false;  ///< the scalar units are HU
   std::int64_t islands = 0;   ///< that were removed
@@ -40,7 +41,8 @@ Modality findModality(const Volume& volume, const std::optional<Modality>& trans
 
 /// Non-local means with the noise of the request, else with estimated noise; then noise below 3 HU
 /// or, for other modalities, 0.3 % of the range leaves the volume unchanged, as does, with
-/// a warning, a machine with less memory than three volumes need.
+/// a warning, a machine with less memory than three volumes need. In a batch, uses the result of an
+/// earlier row for the same volume and request, bit for bit the same (io/SharedSlot).
 SmoothedVolume smoothVolume(const VolumeHandle& volume, const SmoothingRequest& request,
                             Modality modality);
 

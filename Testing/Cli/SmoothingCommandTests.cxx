@@ -231,6 +231,38 @@ TEST_F(SmoothingCommand, ServerShowsTheSmoothedVolumeInEveryFile) {
   EXPECT_TRUE(isSmoothed("a.exr"));
 }
 
+TEST_F(SmoothingCommand, RowsOfABatchReuseTheSmoothedVolume) {
+  struct Row {
+    std::string name, input, view, smoothing;
+    bool isReused;
+  };
+  const Row rows[] = {
+      {"a", "noisy.nrrd", "anterior", "auto", false}, {"b", "noisy.nrrd", "left", "auto", true},
+      {"c", "noisy.nrrd", "left", "15", false},       {"d", "clean.nrrd", "left", "15", false},
+      {"e", "clean.nrrd", "anterior", "15", true},    {"f", "noisy.nrrd", "left", "auto", false}};
+  std::string table = "name,input,view,volume-smoothing\n";
+  for (const auto& [name, input, view, smoothing, isReused] : rows)
+    table += name + "," + input + "," + view + "," + smoothing + "\n";
+  folder.write("t.csv", table);
+  const Outcome batch = run(
+      {"batch", "t.csv", "-o", "out", "--size", "16x16", "--samples", "2", "--progress", "none"},
+      folder.path());
+  ASSERT_EQ(batch.status, 0) << batch.err;
+  for (const Row& row : rows) {
+    const std::string base = "out/" + row.name + "/" + row.name;
+    const nlohmann::json smoothing = readStats(base + ".json").at("volumeSmoothing");
+    EXPECT_EQ(smoothing.at("reused"), row.isReused) << row.name;
+    render({"--view", row.view, "--volume-smoothing", row.smoothing, "-o", "alone.png",
+            "--stats-json", "alone.json"},
+           row.input);
+    EXPECT_EQ(readBytes(folder / (base + ".png")), readBytes(folder / "alone.png")) << row.name;
+    nlohmann::json alone = readStats("alone.json").at("volumeSmoothing");
+    EXPECT_EQ(alone.at("reused"), false);
+    alone["reused"] = row.isReused;
+    EXPECT_EQ(smoothing, alone) << row.name;
+  }
+}
+
 TEST_F(SmoothingCommand, RejectsOtherValues) {
   for (const char* value : {"on", "-3", "nan", "1,2", "3 HU"}) {
     const Outcome outcome = run(

@@ -1,4 +1,5 @@
 #include "io/platform/ChildProcess.h"
+#include "io/platform/SharedSlot.h"
 
 #include <gtest/gtest.h>
 
@@ -41,6 +42,34 @@ TEST(ChildProcess, DISABLED_InheritsNoFiles) {
   EXPECT_EQ(std::cin.get(), EOF);
   for (int file = 3; file < 64; ++file)
     EXPECT_LT(::fcntl(file, F_GETFD), 0) << file;
+}
+
+/// The result of the parent is in the inherited slot, and only of its own key and size.
+TEST(ChildProcess, DISABLED_ReadsTheSlot) {
+  const auto slot = SharedSlot::findInherited();
+  ASSERT_TRUE(slot);
+  std::string bytes(5, '.');
+  EXPECT_FALSE(slot->read(8, bytes));
+  EXPECT_FALSE(slot->read(7, std::span(bytes).first(4)));
+  EXPECT_EQ(slot->read(7, bytes), (SharedSlot::Numbers{1.5, -2.0}));
+  EXPECT_EQ(bytes, "voxel");
+  slot->write(9, {}, std::string("child"));
+  for (int file = ChildProcess::inheritedFile + 1; file < 64; ++file)
+    EXPECT_TRUE(::fcntl(file, F_GETFD) < 0 || file == *slot->file()) << file;
+}
+
+TEST(ChildProcess, InheritsASlot) {
+  EXPECT_FALSE(SharedSlot::findInherited());
+  const SharedSlot slot;
+  std::string bytes(5, '.');
+  EXPECT_FALSE(slot.read(0, bytes)) << "empty";
+  slot.write(7, {1.5, -2.0}, std::string("voxel"));
+  ChildProcess child(makeArguments("ReadsTheSlot"), 4, &slot.file());
+  waitFor(child);
+  EXPECT_EQ(child.status(), 0) << child.errors();
+  EXPECT_FALSE(slot.read(7, bytes));
+  EXPECT_TRUE(slot.read(9, bytes));
+  EXPECT_EQ(bytes, "child");
 }
 
 TEST(ChildProcess, ReportsHowItEnded) {

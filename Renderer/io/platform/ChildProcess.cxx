@@ -19,7 +19,8 @@ namespace {
 
 /// Executes the program, in the child. Async-signal-safe, since other threads may have held locks
 /// at the fork. Signals are blocked on entry, so that the parent's handlers do not run here.
-[[noreturn]] void execProgram(pid_t parent, int errors, char* const* arguments, int failureStatus) {
+[[noreturn]] void execProgram(pid_t parent, int errors, const Descriptor* inherited,
+                              char* const* arguments, int failureStatus) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) // the parent died before PR_SET_PDEATHSIG
     ::_exit(1);
@@ -28,7 +29,11 @@ namespace {
   ::dup2(devNull, STDIN_FILENO);
   ::dup2(devNull, STDOUT_FILENO);
   ::dup2(errors, STDERR_FILENO);
-  ::closefrom(STDERR_FILENO + 1);
+  if (inherited && **inherited != ChildProcess::inheritedFile)
+    ::dup2(**inherited, ChildProcess::inheritedFile);
+  else if (inherited)
+    ::fcntl(**inherited, F_SETFD, 0); // not closed by exec
+  ::closefrom(inherited ? ChildProcess::inheritedFile + 1 : STDERR_FILENO + 1);
   for (int signal = 1; signal < NSIG; ++signal) {
     struct sigaction action = {};
     if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN)
@@ -46,7 +51,8 @@ namespace {
 
 } // namespace
 
-ChildProcess::ChildProcess(std::vector<std::string> arguments, int failureStatus)
+ChildProcess::ChildProcess(std::vector<std::string> arguments, int failureStatus,
+                           const Descriptor* inherited)
     : m_errors(::memfd_create("errors", MFD_CLOEXEC)) {
   const ArgumentList selfArguments(makeSelfArguments(std::move(arguments)));
   const pid_t parent = ::getpid();
@@ -56,7 +62,7 @@ ChildProcess::ChildProcess(std::vector<std::string> arguments, int failureStatus
   ::pthread_sigmask(SIG_BLOCK, &all, &before);
   m_id = m_errors.isOpen() ? ::fork() : -1;
   if (m_id == 0)
-    execProgram(parent, *m_errors, selfArguments.get(), failureStatus);
+    execProgram(parent, *m_errors, inherited, selfArguments.get(), failureStatus);
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (m_id < 0)
     throw outputError(ErrorCode::outOfMemory, "memory",

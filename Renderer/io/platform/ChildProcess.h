@@ -3,6 +3,7 @@
 
 #include "io/platform/Descriptor.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,14 +11,19 @@
 
 namespace fenestra::core {
 
-/// Child process with default signal handlers, no file of this process, no standard input, standard
-/// output discarded and standard error recorded. Signals of the terminal do not reach it.
+/// Child process with default signal handlers, at most one file of this process, no standard input,
+/// standard output discarded and standard error recorded. Signals of the terminal do not reach it.
 /// The kernel kills it when the thread that created it ends.
 class ChildProcess {
 public:
+  /// Descriptor by which the child has the file that it inherits.
+  static constexpr int inheritedFile = 3;
+
   /// Runs `fenestra arguments…`. The child ends with `failureStatus` if it cannot execute the
-  /// program. Throws Error (output) if no process can be started.
-  ChildProcess(std::vector<std::string> arguments, int failureStatus);
+  /// program. `inherited`: a file that it inherits, or null. Throws Error (output) if no process
+  /// can be started.
+  ChildProcess(std::vector<std::string> arguments, int failureStatus,
+               const Descriptor* inherited = nullptr);
   /// Kills the process if it still runs.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;

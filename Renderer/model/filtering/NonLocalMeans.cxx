@@ -192,7 +192,8 @@ LargeArray<Voxel> filterVoxels(const Volume& volume, const LargeArray<Voxel>& vo
   return Filter<Voxel>(volume, voxels, filter).run();
 }
 
-/// Copy of a volume without its voxels and their range.
+} // namespace
+
 Volume copyWithoutVoxels(const Volume& volume) {
   return {.grid = volume.grid,
           .voxels = {},
@@ -201,8 +202,6 @@ Volume copyWithoutVoxels(const Volume& volume) {
           .modality = volume.modality,
           .hasContrastAgent = volume.hasContrastAgent};
 }
-
-} // namespace
 
 Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter) {
   constexpr double leastStrength = 1e-12; // of the range: squares of differences stay finite

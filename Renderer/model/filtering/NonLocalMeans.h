@@ -22,4 +22,7 @@ struct NonLocalMeans {
 /// threads or instruction set. A strength below 10^-12 of the range changes nothing.
 Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter);
 
+/// Copy of a volume without its voxels and their range.
+Volume copyWithoutVoxels(const Volume& volume);
+
 } // namespace fenestra::core
