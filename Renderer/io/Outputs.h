@@ -2,11 +2,11 @@
 // Results of a command. They are declared before the long work, refused if they would overwrite a
 // user's file, and put in place together when complete. Nothing else in Renderer writes results.
 //
-// Contents are complete and synced under temporary names before the first is renamed. Hard links
-// keep the previous files meanwhile, so that a rename that fails restores them. Encoders work in
-// memory, so that a full disk is detected here alone. What the process has read is protected if
-// there is an InputRegistry. Programs without a handler that calls endWhenUnblocked
-// (io/platform/TempFiles.h) can be ended by a signal between two renames.
+// Contents are complete and synced under temporary names before the first is renamed. Names are
+// exchanged, so that a rename that fails restores the previous files. Encoders work in memory, so
+// that a full disk is detected here alone. What the process has read is protected if there is an
+// InputRegistry. Programs without a handler that calls endWhenUnblocked (io/platform/TempFiles.h)
+// can be ended by a signal between two renames.
 
 #include "io/InputRegistry.h"
 #include "io/ProvenanceTag.h"

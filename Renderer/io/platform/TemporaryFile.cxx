@@ -3,6 +3,7 @@
 #include "io/platform/SystemErrors.h"
 
 #include <array>
+#include <cstdio>
 #include <fcntl.h>
 #include <sys/xattr.h>
 
@@ -79,31 +80,51 @@ void TemporaryFile::finish(Durability durability) {
 }
 
 void TemporaryFile::place() {
+  const char* const name = m_name->path().c_str();
   const char* const target = m_target.c_str();
   m_replaced = Descriptor(::open(target, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (m_replaced.isOpen()) // locked if readable: other runs must not consider it stale
     ::flock(*m_replaced, LOCK_SH | LOCK_NB);
-  m_before.emplace(makeSiblingName(m_target), TempFileGuard::Kind::file);
-  const char* const before = m_before->path().c_str();
-  Placed placed = Placed::replacing;
-  if (retryOnEintr([&] { return ::link(target, before); }) != 0) {
-    if (errno != ENOENT && errno != EPERM && errno != EOPNOTSUPP && errno != ENOSYS)
-      throw writeError(m_target, errno);
-    placed = errno == ENOENT ? Placed::fresh : Placed::no; // no: there are no hard links
-  }
-  if (retryOnEintr([&] { return ::rename(m_name->path().c_str(), target); }) != 0)
+  const auto rename = [&](unsigned flags) {
+    return retryOnEintr([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, flags); }) == 0;
+  };
+  if (rename(RENAME_NOREPLACE))
+    m_placed = Placed::fresh;
+  else if (errno == EEXIST && rename(RENAME_EXCHANGE))
+    m_placed = Placed::exchanged;
+  else if (errno == EINVAL || errno == ENOSYS)
+    placeByLink();
+  else
     throw writeError(m_target, errno);
-  m_placed = placed;
+}
+
+/// Places the file on file systems that cannot exchange names. A hard link preserves the previous
+/// file; without hard links, placing cannot be undone.
+void TemporaryFile::placeByLink() {
+  m_before.emplace(makeSiblingName(m_target), TempFileGuard::Kind::file);
+  const bool hasBackup = ::link(m_target.c_str(), m_before->path().c_str()) == 0;
+  const bool isFresh = !hasBackup && errno == ENOENT;
+  if (retryOnEintr([&] { return ::rename(m_name->path().c_str(), m_target.c_str()); }) != 0)
+    throw writeError(m_target, errno);
+  m_placed = isFresh ? Placed::fresh : hasBackup ? Placed::linked : Placed::no;
 }
 
 void TemporaryFile::undoPlace() noexcept {
   if (fileId(m_target) != fileId(*m_file)) // another run has since placed a result of this name
-    return;
-  for (int attempt = 0; attempt < 2; ++attempt) // a failure may be temporary
-    if ((m_placed == Placed::fresh && ::unlink(m_target.c_str()) == 0) ||
-        (m_placed == Placed::replacing &&
-         ::rename(m_before->path().c_str(), m_target.c_str()) == 0))
-      return;
+    m_placed = Placed::no;
+  const char* const name = m_name->path().c_str();
+  const char* const target = m_target.c_str();
+  const auto retryOnce = [](auto&& call) { // retries once: a failure may be temporary
+    if (call() != 0)
+      static_cast<void>(call());
+  };
+  if (m_placed == Placed::exchanged)
+    retryOnce([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, RENAME_EXCHANGE); });
+  else if (m_placed == Placed::fresh)
+    retryOnce([&] { return ::unlink(target); });
+  else if (m_placed == Placed::linked)
+    retryOnce([&] { return ::rename(m_before->path().c_str(), target); });
+  m_placed = Placed::no;
 }
 
 } // namespace fenestra::core

@@ -30,22 +30,22 @@ public:
   /// group cannot be set, no user gains rights. Throws Error (output).
   void finish(Durability durability);
 
-  /// Renames this file to `target`. A hard link keeps an existing target until this object ends.
-  /// Throws Error (output) without having changed anything.
+  /// Renames this file to `target`. An existing target gets the temporary name, and is removed with
+  /// this object. Throws Error (output) without having changed anything.
   void place();
-  /// Undoes place(), after another file of the group could not be placed. Cannot restore a previous
-  /// file on file systems without hard links.
+  /// Undoes place(), after another file of the group could not be placed.
   void undoPlace() noexcept;
 
 private:
-  enum class Placed { no, fresh, replacing };
+  enum class Placed { no, fresh, exchanged, linked };
 
   void open();
+  void placeByLink();
 
   std::filesystem::path m_target;
   Descriptor m_file;
   Descriptor m_replaced; ///< the previous file, locked while its name is temporary
-  /// Names, removed before their locks are released; m_before: the previous file.
+  /// Names, removed before their locks are released; m_before: the previous file (placeByLink).
   std::optional<TempFileGuard> m_name, m_before;
   Placed m_placed = Placed::no;
 };
