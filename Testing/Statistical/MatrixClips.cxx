@@ -105,7 +105,7 @@ void placeClip(const Combination& c, Generator& generator, MatrixScene& scene) {
   const DepthBuffer& buffer = *depths.buffer;
   for (std::int64_t row = 0; row < buffer.rows(); ++row)
     for (std::int64_t column = 0; column < buffer.columns(); ++column)
-      scene.fenestraDepths.push_back(depths.silhouette && surface.focus.isFocus(column, row)
+      scene.fenestraDepths.push_back(depths.silhouette && surface.shown.isFocus(column, row)
                                          ? depths.surfaceDepth(buffer.position(column, row))
                                          : buffer.at(buffer.sample(column, row)));
 }

@@ -203,9 +203,11 @@ def test_names_of_labels(files, subject, reference):
 
 
 def test_segments_at_another_place_give_a_warning(subject):
-    with pytest.warns(fenestra.FenestraWarning, match="position|apart"):
+    moved = subject.affine.copy()
+    moved[2, 3] += 4
+    with pytest.warns(fenestra.FenestraWarning, match="apart"):
         fenestra.Scene(
-            subject.array, affine=subject.affine, segmentation=(subject.labels, numpy.eye(4)), labels=subject.names, **OPTIONS
+            subject.array, affine=subject.affine, segmentation=(subject.labels, moved), labels=subject.names, **OPTIONS
         ).render(**FEW)
 
 
