@@ -320,7 +320,9 @@ void SilhouetteCells::evaluate(std::span<Query> queries) const {
   };
   for (Query& query : queries) {
     const Interval bounds = findBounds(query);
-    if (m_tracer->isFocus(query.position, toFocus + query.nearLimit))
+    const double nearLimit = toFocus + query.nearLimit;
+    const bool isBounded = isInner(query.cell) || nearLimit <= bounds.end; // else maybe in a slot
+    if (isBounded && m_tracer->isFocus(query.position, nearLimit))
       query.depth = bounds.begin - toFocus; // the hit is at or before nearLimit
     else if (isInner(query.cell))
       inner.add(query, bounds);
