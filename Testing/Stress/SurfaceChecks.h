@@ -182,15 +182,16 @@ inline void expectBoxes(const View& view, const Clip& clip) {
   }
 }
 
-/// Expects the cut to end where the focus begins, at the centers of the image's focus pixels. An
-/// exact cut may end behind a steep focus surface.
+/// Expects the cut to end where the focus begins, at the centers of the image's focus pixels,
+/// except at slots. An exact cut may end behind a steep focus surface.
 inline void expectFocusVisible(const View& view, const ClippingSurface& surface,
                                Boundary boundary) {
   const DepthBuffer& buffer = surface.focus.depth;
   for (int row = 0; row < view.camera.height(); ++row)
     for (int column = 0; column < view.camera.width(); ++column) {
       const std::int64_t sample = buffer.viewportSample(column, row);
-      if (!(buffer.at(sample) < infinity))
+      if (!(buffer.at(sample) < infinity) ||
+          isAtSlot(surface, sample % buffer.columns(), sample / buffer.columns()))
         continue;
       const Ray ray = view.camera.makeRay(column + 0.5, row + 0.5);
       const double begin = buffer.at(sample) / view.camera.depthPerLength(ray);
