@@ -3,6 +3,7 @@
 
 #include "fenestra/Render.h"
 #include "image/Image.h"
+#include "scene/OrganPresets.h"
 #include "scene/PreparedScene.h"
 
 #include <mutex>
@@ -20,9 +21,9 @@ struct Segmentation::Data {
 
 struct Scene::Data {
   core::Input input;
-  core::RenderRequest request;            ///< without size and features
-  SceneOptions options;                   ///< as given
-  std::optional<std::string> preset = {}; ///< name of the chosen one
+  core::RenderRequest request; ///< without size and features
+  SceneOptions options;        ///< as given
+  std::optional<core::ChosenPreset> preset = {};
   bool isReadInProcess = false;
   std::mutex mutex = {};
   std::optional<core::PreparedScene> prepared = {}; ///< for the last image
@@ -44,11 +45,9 @@ struct Image::Data {
   std::map<std::string, std::string> metadata;
 };
 
-/// Adds the options of the preset, if there is one, and sets its name to that of the chosen one.
-/// `sources`: chooses among several volumes and segmentations. Returns the modality for which the
-/// preset chose the transfer function, if it did. Throws core::Error (request, input).
-std::optional<core::Modality>
-applyPreset(const core::Input& input, const core::RenderRequest& sources, SceneOptions& options);
+/// Adds the focus and the options of a preset. Returns the modality for which it chose the transfer
+/// function, if it did. Throws core::Error (input).
+std::optional<core::Modality> applyPreset(const core::ChosenPreset& chosen, SceneOptions& options);
 
 /// Sets the parts of the request that the options state. Throws core::Error (request).
 void setOptions(const SceneOptions& options, core::RenderRequest& request);

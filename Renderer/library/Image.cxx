@@ -96,7 +96,7 @@ std::string describe(const core::CameraPose& pose) {
 
 } // namespace
 
-Image makeImage(const core::PreparedScene& scene, const std::optional<std::string>& preset,
+Image makeImage(const core::PreparedScene& scene, const std::string* preset,
                 const core::RenderSettings& settings, const core::RenderResult& result,
                 const std::optional<core::FilteredImage>& filtered) {
   core::Image channels =

@@ -2,7 +2,6 @@
 // its view, clip and appearance need have members here.
 
 #include "library/Data.h"
-#include "scene/OrganPresets.h"
 
 #include <algorithm>
 #include <variant>
@@ -65,26 +64,21 @@ bool setMember(const Member& member, const std::string& text) {
 
 } // namespace
 
-std::optional<core::Modality>
-applyPreset(const core::Input& input, const core::RenderRequest& sources, SceneOptions& options) {
-  if (!options.preset)
-    return std::nullopt;
-  const auto [preset, focus] = core::chooseOrganPreset(
-      *options.preset, input,
-      {sources.volume.name, sources.segmentation, sources.labels, options.focus}, sources.volume);
+std::optional<core::Modality> applyPreset(const core::ChosenPreset& chosen, SceneOptions& options) {
+  const core::OrganPreset& preset = chosen.preset;
   const bool hasTransfer = options.appearance.transfer.has_value();
-  options.focus = focus;
+  options.focus = chosen.focus;
   const std::vector<PresetOption> known = listOptions(options);
   for (const auto& [name, value] : preset.options) {
     const auto option = std::ranges::find(known, name, &PresetOption::name);
     if (option == known.end())
-      throw core::fieldError(*options.preset, "flags", '"', name,
+      throw core::fieldError(preset.name, "flags", '"', name,
                              "\" is an option of the command line alone");
     if (!option->isOverridden && !setMember(option->member, value))
-      throw core::fieldError(*options.preset, "flags", '"', name, "\" has an invalid value");
+      throw core::fieldError(preset.name, "flags", '"', name, "\" has an invalid value");
   }
-  options.preset = preset.name;
-  return hasTransfer ? std::nullopt : std::optional(preset.modality);
+  const bool setsTransfer = !hasTransfer && options.appearance.transfer;
+  return setsTransfer ? std::optional(preset.modality) : std::nullopt;
 }
 
 } // namespace v1

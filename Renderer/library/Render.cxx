@@ -101,7 +101,8 @@ private:
     if (result.finishedSamples == 0)
       throw core::requestError(core::ErrorCode::stopped, "render",
                                "was stopped before the first pass");
-    return makeImage(scene, m_scene->preset, m_settings, result, denoiser.apply(result));
+    return makeImage(scene, m_scene->preset ? &m_scene->preset->preset.name : nullptr, m_settings,
+                     result, denoiser.apply(result));
   }
 
   const std::shared_ptr<Scene::Data> m_scene;

@@ -42,7 +42,8 @@ struct Sources {
 };
 
 std::shared_ptr<Scene::Data> share(core::Input input, const SceneOptions& options,
-                                   const Sources& sources = {}) {
+                                   const Sources& sources = {},
+                                   const Scene::Data* previous = nullptr) {
   const auto reading = allowReading(sources.isReadInProcess);
   core::RenderRequest request;
   request.input = input.path();
@@ -50,10 +51,19 @@ std::shared_ptr<Scene::Data> share(core::Input input, const SceneOptions& option
   request.segmentation = sources.segmentation;
   request.labels = sources.labels;
   SceneOptions complete = options;
-  request.transferModality = applyPreset(input, request, complete);
+  std::optional<core::ChosenPreset> preset;
+  if (options.preset && previous && previous->options.preset == options.preset &&
+      previous->options.focus == options.focus)
+    preset = previous->preset; // does not read the names of segments again
+  else if (options.preset)
+    preset = core::chooseOrganPreset(
+        *options.preset, input,
+        {sources.volume.name, sources.segmentation, sources.labels, options.focus}, sources.volume);
+  if (preset)
+    request.transferModality = applyPreset(*preset, complete);
   setOptions(complete, request);
   return std::shared_ptr<Scene::Data>(new Scene::Data{std::move(input), std::move(request), options,
-                                                      complete.preset, sources.isReadInProcess});
+                                                      std::move(preset), sources.isReadInProcess});
 }
 
 /// Throws core::Error if a segment of the focus does not exist.
@@ -109,7 +119,7 @@ Scene Scene::withOptions(const SceneOptions& options) const {
     const core::RenderRequest& own = m_data->request;
     std::shared_ptr<Data> changed =
         share(m_data->input, options,
-              {own.volume, own.segmentation, own.labels, m_data->isReadInProcess});
+              {own.volume, own.segmentation, own.labels, m_data->isReadInProcess}, m_data.get());
     changed->request.omissions = own.omissions;
     changed->prepared = m_data->prepared;
     return Scene(std::move(changed));

@@ -92,7 +92,7 @@ std::vector<OutlineEdge> findOutlineEdges(const Clip& clip, const Domain& volume
 struct OutlinePoint {
   double depth;        ///< of the focus just inside, mm
   Vec2 outside;        ///< just outside
-  bool isSlot = false; ///< the focus goes on in a closed slot (SilhouetteCells.h)
+  bool isSlot = false; ///< the focus continues in a closed slot (SilhouetteCells.h)
 };
 
 /// Bisects for the outline between `inside` and `outside`, to 2^-24 of their distance.

@@ -17,7 +17,7 @@ struct BoundaryMetrics {
   Distribution gap; ///< |context depth - focus depth|, mm, without depth jumps
   /// Difference of the two-sample slopes on both sides, mm of depth per mm, without depth jumps.
   Distribution slopeJump;
-  /// Fraction of the crossings where the focus depth itself jumps, or goes on in a closed slot.
+  /// Fraction of the crossings where the focus depth itself jumps, or continues in a closed slot.
   double depthJumpFraction = 0.0;
   std::size_t crossings = 0;
 };

@@ -117,6 +117,8 @@ TEST(LibraryScene, AutomaticPresetSuitsTheNamesOfSegments) {
     EXPECT_EQ(render(scene, makeSmall()).metadata().at("preset"), "liver");
     EXPECT_GT(scene.clipSurface(24, 16).points.size(), 0u) << name;
     EXPECT_EQ(scene.options().preset, name);
+    for (const Scene& either : {scene, scene.withOptions(options)}) // by modality: it sets none
+      EXPECT_EQ(either.choices(24, 16).front().find("(by the preset)"), std::string::npos);
   }
   const auto findPresetCode = [&](const char* name, const auto&... segments) {
     options.preset = name;

@@ -229,7 +229,7 @@ TEST(SilhouetteCells, NarrowSlotsAlongTheOutlineAreClosed) {
     for (double x = -8.0; x < 8.0; x += 0.7) {
       EXPECT_NEAR(clip.surfaceDepth(Vec2(x, 8.0)), near, 1e-3);
       EXPECT_NEAR(clip.surfaceDepth(Vec2(x, 10.7)), extra > 0 ? far : near,
-                  extra > 0 ? 1e-3 : 2.0) // the slope of the near box goes on
+                  extra > 0 ? 1e-3 : 2.0) // the slope of the near box continues
           << "between the upper faces, at 10.4 and 10.9";
     }
     const auto countFocus = [](const FocusDepth& focus) {
