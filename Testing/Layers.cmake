@@ -1,8 +1,8 @@
 # Checks #include directives against the table in Renderer/README.md: a folder may include its own headers, those
 # of the folders in its row's last column, and transitively those that these may include. A row may name only rows
 # above it, so there are no cycles. System calls are in io/platform alone, so no other folder includes POSIX or Linux
-# headers, but two files below it.
-# usage: cmake -DRENDERER=FOLDER -P Layers.cmake
+# headers, but two files below it. The oracle, which checks the integrators, includes no formula of theirs.
+# usage: cmake -DRENDERER=FOLDER -DORACLE=FOLDER -P Layers.cmake
 cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/RendererSources.cmake")
 set(folders)
@@ -50,5 +50,27 @@ foreach(source IN LISTS sources)
     endif()
   endforeach()
 endforeach()
+
+# Headers of the renderer that the oracle includes, also indirectly.
+file(GLOB left "${ORACLE}/*.h" "${ORACLE}/*.cxx")
+list(LENGTH left count)
+set(seen)
+while(left)
+  list(POP_FRONT left source)
+  file(STRINGS "${source}" lines REGEX "^ *# *include \"")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^[^\"]*\"([^\"]*)\".*$" "\\1" header "${line}")
+    if(header MATCHES "^formulas/")
+      list(APPEND errors "${source}: includes ${header}, and the oracle includes it")
+    elseif(EXISTS "${RENDERER}/${header}" AND NOT header IN_LIST seen)
+      list(APPEND seen ${header})
+      list(APPEND left "${RENDERER}/${header}")
+    endif()
+  endforeach()
+endwhile()
+list(LENGTH seen headers)
+if(count LESS 10 OR headers LESS 10)
+  list(APPEND errors "${ORACLE}: hardly any sources or headers")
+endif()
 
 report_errors("${errors}" "fix the above, or the table")

@@ -5,7 +5,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
 install_packages clang-format clang-tidy
 cd "$top"
 say "clang-format"
-git ls-files '*.h' '*.cxx' | xargs clang-format --dry-run --Werror || die "run clang-format -i on the files above"
+git ls-files '*.h' '*.cxx' '*.inl' | xargs clang-format --dry-run --Werror || die "run clang-format -i on the files above"
 twice=$(git ls-files 'Renderer/*.h' ':!Renderer/include' ':!Renderer/library' | xargs grep -hoE '^(struct|class) \w+( final)?( :| \{)' | awk '{ print $2 }' |
   sort | uniq -d)
 [ -z "$twice" ] || die "two types have the same name, which the linker would merge: $twice"

@@ -16,8 +16,9 @@ std::array<float, 3> narrow3(const Triple& v) {
   return {narrow(v[0]), narrow(v[1]), narrow(v[2])};
 }
 
-/// Rows of an affine map, translation last.
-using AffineRows = std::array<std::array<float, 4>, 3>;
+/// A row of an affine map, translation last.
+using AffineRow = std::array<float, 4>;
+using AffineRows = std::array<AffineRow, 3>;
 
 inline AffineRows affineRows(const Affine& map) {
   AffineRows rows;

@@ -15,13 +15,6 @@ constexpr std::uint64_t mixBits(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Bit mixer for 32 bits with low bias (the Hash Prospector project).
-constexpr std::uint32_t mixBits32(std::uint32_t x) {
-  x = (x ^ (x >> 16)) * 0x21f0aaadU;
-  x = (x ^ (x >> 15)) * 0x735a2d97U;
-  return x ^ (x >> 15);
-}
-
 /// Random bits to a uniform number in [0, 1); the largest value is 1 - 2^-53.
 constexpr double toUniform(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1p-53;

@@ -3,6 +3,7 @@
 // noise are stratified over the pixel's samples, or independent.
 
 #include "base/Random.h"
+#include "base/ScalarMath.h"
 
 #include <array>
 
@@ -55,12 +56,10 @@ public:
   /// Words for up to `maxSamples` successive samples of a pixel: hashes of a counter and a key.
   struct Stream {
     static constexpr std::uint32_t maxSamples = std::uint32_t{1} << 27;
-    static constexpr std::uint32_t wordsPerSample = 16; ///< words per sample
-    static constexpr std::uint32_t step = 0x9e3779b9U;
 
     std::uint32_t start, key;
 
-    std::uint32_t at(std::uint32_t n) const { return mixBits32((start + n * step) ^ key); }
+    std::uint32_t at(std::uint32_t n) const { return scalar::streamWord(start, key, n); }
   };
 
   /// Stream that contains a sample, at index `sample` % Stream::maxSamples.
@@ -78,7 +77,7 @@ public:
   PrimarySamples generate(const Stream& stream, std::uint32_t sample) const {
     Words words;
     for (std::uint32_t i = 0; i < words.size(); ++i)
-      words[i] = stream.at(Stream::wordsPerSample * sample + i);
+      words[i] = stream.at(scalar::firstWordOfSample(sample) + i);
     if (m_isStratified)
       stratify(stream, sample, words);
     const auto toUInt64 = [&](std::size_t high, std::size_t low) {
@@ -88,14 +87,6 @@ public:
             toUInt64(4, 5), toUInt64(6, 7),  toUInt64(8, 9)};
   }
 
-  static constexpr unsigned strataBits = 3;                   ///< bits of a stratum's index
-  static constexpr std::uint32_t elementMask = blockSize - 1; ///< mask of a field element
-  static constexpr std::uint32_t leadingMask = elementMask << (32 - strataBits); ///< mask in a word
-  static constexpr std::uint32_t pairs = 4;
-  /// Index of the first word that shuffles a block's strata, among the words of the block's first
-  /// sample; one word per pair.
-  static constexpr std::uint32_t shuffleWords = Stream::wordsPerSample - pairs;
-
   /// Strata of a pair, at blockSize * factor + index: the product of elements `index` and `factor`
   /// modulo x^3 + x + 1 in a word's leading bits, followed by the product's bits in reverse order.
   /// Factor 0 counts as 1.
@@ -103,22 +94,18 @@ public:
   static const Nets nets;
 
 private:
-  /// Hashes of a sample: position (0, 1), depth, acceptance, direction (4, 5), choices (6, 7), seed
-  /// (8, 9), and the low bits of depth and acceptance, which SIMD code omits.
-  using Words = std::array<std::uint32_t, shuffleWords>;
+  /// Hashes of a sample, in the order of formulas/Random.inl.
+  using Words = std::array<std::uint32_t, 12>;
 
   /// Replaces the leading bits of each number by its stratum.
   static void stratify(const Stream& stream, std::uint32_t sample, Words& words) {
-    const std::uint32_t index = sample / 2 % blockSize;
-    const std::uint32_t block = Stream::wordsPerSample * (sample - 2 * index) + shuffleWords;
-    for (std::uint32_t pair = 0; pair < pairs; ++pair) {
-      const std::uint32_t shuffle = stream.at(block + pair);
-      const std::uint32_t net = nets[blockSize * (shuffle & elementMask) + index];
-      const auto replaceLeading = [&](std::uint32_t strata, std::uint32_t& word) {
-        word = (strata & leadingMask) | word >> strataBits;
-      };
-      replaceLeading(net ^ shuffle, words[2 * pair]);
-      replaceLeading((net ^ shuffle) << strataBits, words[2 * pair + 1]);
+    const std::uint32_t index = scalar::indexInBlock(sample);
+    for (std::uint32_t pair = 0; pair < 4; ++pair) {
+      const std::uint32_t shuffle = stream.at(scalar::wordOfShuffle(sample, index, pair));
+      const std::uint32_t strata = nets[scalar::placeInNets(shuffle, index)] ^ shuffle;
+      std::uint32_t* const word = &words[2 * pair];
+      word[0] = scalar::replaceLeading(strata, word[0]);
+      word[1] = scalar::replaceLeading(scalar::nextStrata(strata), word[1]);
     }
   }
 
@@ -128,7 +115,7 @@ private:
       for (std::uint32_t index = 0; index < blockSize; ++index) {
         std::uint32_t product = 0;
         std::uint32_t shifted = factor > 0 ? factor : 1;
-        for (unsigned i = 0; i < strataBits; ++i) {
+        for (unsigned i = 0; i < 3; ++i) {
           product ^= index >> i & 1 ? shifted : 0;
           shifted = shifted << 1 ^ (shifted > 3 ? 0b1011 : 0);
         }

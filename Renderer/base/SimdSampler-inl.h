@@ -23,35 +23,23 @@ struct SimdPrimarySamples {
 /// Sampler::generate for `sample` in the stream (start, key).
 HWY_INLINE SimdPrimarySamples generateSamples(UInt start, UInt key, UInt sample,
                                               bool isStratified) {
-  using Stream = Sampler::Stream;
-  constexpr int strataBits = Sampler::strataBits;
-  const auto at = [&](UInt n) { return mixBits((start + n * Stream::step) ^ key); };
-  const UInt first = sample * Stream::wordsPerSample; // word of the stream
+  const auto at = [&](UInt n) { return streamWord(start, key, n); };
+  const UInt first = firstWordOfSample(sample);
   const auto two = [&](std::uint32_t i) { return std::array{at(first + i), at(first + (i + 1))}; };
   SimdPrimarySamples numbers{two(0), two(2), two(4), two(6), two(8)};
   if (!isStratified)
     return numbers;
-  const UInt index = shiftRight<1>(sample) & Sampler::elementMask;
-  const UInt block = (sample - (index + index)) * Stream::wordsPerSample;
-  std::uint32_t pairWord = Sampler::shuffleWords;
+  const UInt index = indexInBlock(sample);
+  std::uint32_t pair = 0;
   for (std::array<UInt, 2>* words :
        {&numbers.position, &numbers.collision, &numbers.direction, &numbers.choices}) {
-    const UInt shuffle = at(block + pairWord++);
-    const UInt factor = shuffle & Sampler::elementMask;
-    const UInt net = gather(Sampler::nets.data(), bitsAsInt(factor * Sampler::blockSize + index));
-    const auto replaceLeading = [&](UInt leading, UInt& word) {
-      word = (leading & Sampler::leadingMask) ^ shiftRight<strataBits>(word);
-    };
-    const UInt strata = net ^ shuffle;
-    replaceLeading(strata, (*words)[0]);
-    replaceLeading(shiftLeft<strataBits>(strata), (*words)[1]);
+    const UInt shuffle = at(wordOfShuffle(sample, index, pair++));
+    const UInt strata =
+        shuffle ^ gather(Sampler::nets.data(), bitsAsInt(placeInNets(shuffle, index)));
+    (*words)[0] = replaceLeading(strata, (*words)[0]);
+    (*words)[1] = replaceLeading(nextStrata(strata), (*words)[1]);
   }
   return numbers;
-}
-
-/// Uniform in [0, 1), from the 24 leading bits.
-HWY_INLINE Float toUniformBelow1(UInt bits) {
-  return toFloat(bitsAsInt(shiftRight<8>(bits))) * 0x1p-24F;
 }
 
 } // namespace fenestra::core::HWY_NAMESPACE

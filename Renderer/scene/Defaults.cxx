@@ -1,6 +1,7 @@
 #include "scene/Defaults.h"
 
 #include "base/Error.h"
+#include "model/volume/Field.h"
 
 #include <map>
 

@@ -1,6 +1,7 @@
 #include "scene/FocusInterface.h"
 
 #include "base/Distribution.h"
+#include "model/volume/Field.h"
 
 #include <algorithm>
 #include <map>

@@ -1,6 +1,7 @@
 #include "VisibleTissue.h"
 
 #include "base/Text.h"
+#include "model/volume/Field.h"
 
 #include <tbb/parallel_for.h>
 

@@ -2,6 +2,7 @@
 // are parsed like those of `fenestra render`.
 
 #include "EstimateImages.h"
+#include "Formulas/Twin.h"
 #include "Oracle/Oracle.h"
 #include "RunSettings.h"
 #include "Support.h"
@@ -151,6 +152,23 @@ INSTANTIATE_TEST_SUITE_P(Scenes, OracleReference,
                          ::testing::Values(ReferenceCase{"S1", isLongRun() ? 128U : 4U},
                                            ReferenceCase{"S2", isLongRun() ? 128U : 4U}),
                          [](const auto& info) { return std::string(info.param.name); });
+
+class TwinReference : public ::testing::TestWithParam<ReferenceCase> {};
+
+TEST_P(TwinReference, ImageAgreesWithinErrors) {
+  if (!hasReferences())
+    GTEST_SKIP() << "no reference images at " << FENESTRA_REFERENCE;
+  const ReferenceCase& c = GetParam();
+  const RenderOptions options = readArguments(c);
+  const PreparedScene scene(options.scene);
+  const Film film = twin::render(scene.view(), c.samples, 44);
+  expectAgreement(makeImage(film, scene.camera(), scene.clip(), options.layers), c,
+                  isLongRun() ? Bounds{4, 0.07, 0.05} : Bounds{16, 0.3, 0.2});
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, TwinReference,
+                         ::testing::Values(ReferenceCase{"S1", isLongRun() ? 128U : 8U},
+                                           ReferenceCase{"S2", isLongRun() ? 128U : 8U}));
 
 /// Albedo 1 in an environment of 1: every path of the oracle returns 1.
 TEST(OracleReferenceFurnace, EveryPixelOfS3hetIsOne) {

@@ -75,7 +75,7 @@ TEST_P(PhaseEnds, DirectionIsUnitAndDensityExact) {
   const long double size = std::abs(static_cast<long double>(g));
   for (const Vec3& incoming : {Vec3(0, 0, -1), Vec3(-1, 0, 0), Vec3(0.48, -0.6, 0.64)})
     for (const Vec2& u : makeCorners()) {
-      const ScatterSample sample = PhaseScattering(incoming, g, albedo).sample(u);
+      const ScatterSample sample = Scattering(incoming, g, albedo).sample(0.0, u);
       EXPECT_NEAR(sample.outgoing.norm(), 1.0, 1e-15);
       EXPECT_TRUE(sample.weight == albedo);
       const long double chord2 = 2.0L * oneMinusCosine(size, u.x());
@@ -112,9 +112,8 @@ TEST(SurfaceEnds, DirectionIsUnitAndWeightBounded) {
     for (const double power : {0.0, 1e-3, 10.0, 1e4, 1e8, 1e16, 1e30, 1e300, most})
       for (const Vec2& strength : strengths)
         for (const Vec3& gradient : {Vec3(0, 0, -1), Vec3(0, 0, 1e-40), Vec3(0, 0, 1e45)}) {
-          const SurfaceScattering surface(makeIncident(cosine), gradient,
-                                          {strength.x(), strength.y(), power, 0.5},
-                                          Rgb(1.0, 0.3, 0.0));
+          const Scattering surface(makeIncident(cosine), gradient,
+                                   {strength.x(), strength.y(), power, 0.5}, Rgb(1.0, 0.3, 0.0));
           for (const double choice : {0.0, largestUniform})
             for (const Vec2& u : makeCorners()) {
               const ScatterSample sample = surface.sample(choice, u);

@@ -3,6 +3,7 @@
 #include "model/masks/OuterLayer.h"
 
 #include "ClippingTesting.h"
+#include "model/volume/Field.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@ namespace {
 
 const Vec3 incoming = Vec3(0.3, -0.5, 0.81).normalized();
 
-ScatterSample sampleSurface(const SurfaceScattering& surface, Random& random) {
+ScatterSample sampleSurface(const Scattering& surface, Random& random) {
   const double choice = random.uniform();
   return surface.sample(choice, random.uniform2());
 }
@@ -16,21 +16,21 @@ ScatterSample sampleSurface(const SurfaceScattering& surface, Random& random) {
 class HenyeyGreenstein : public ::testing::TestWithParam<double> {};
 
 TEST_P(HenyeyGreenstein, SamplingMatchesPdf) {
-  const PhaseScattering phase(incoming, GetParam(), Rgb::Ones());
+  const Scattering phase(incoming, GetParam(), Rgb::Ones());
   // Peaked lobes need a finer midpoint rule.
-  expectSamplingMatchesPdf([&](Random& r) { return phase.sample(r.uniform2()).outgoing; },
-                           [&](const Vec3& d) { return phase.pdf(d); }, 1.0,
+  expectSamplingMatchesPdf([&](Random& r) { return phase.sample(0.0, r.uniform2()).outgoing; },
+                           [&](const Vec3& d) { return phase.evaluate(d).pdf; }, 1.0,
                            std::abs(GetParam()) > 0.9 ? 400 : 60);
 }
 
 TEST_P(HenyeyGreenstein, MeanCosineIsG) {
-  const PhaseScattering phase(incoming, GetParam(), Rgb::Ones());
+  const Scattering phase(incoming, GetParam(), Rgb::Ones());
   double sum = 0.0;
   double squares = 0.0;
   constexpr int n = 400000;
   for (int i = 0; i < n; ++i) {
     Random random(3, static_cast<std::uint64_t>(i), 0);
-    const double cosine = phase.sample(random.uniform2()).outgoing.dot(incoming);
+    const double cosine = phase.sample(0.0, random.uniform2()).outgoing.dot(incoming);
     sum += cosine;
     squares += cosine * cosine;
   }
@@ -40,11 +40,12 @@ TEST_P(HenyeyGreenstein, MeanCosineIsG) {
 }
 
 TEST_P(HenyeyGreenstein, WeightIsTheAlbedo) {
-  const PhaseScattering phase(incoming, GetParam(), Rgb(0.9, 0.5, 0.1));
+  const Scattering phase(incoming, GetParam(), Rgb(0.9, 0.5, 0.1));
   Random random(1, 2, 3);
-  const ScatterSample sample = phase.sample(random.uniform2());
+  const ScatterSample sample = phase.sample(0.0, random.uniform2());
   EXPECT_TRUE(isApprox(sample.weight, Rgb(0.9, 0.5, 0.1)));
-  EXPECT_TRUE(isApprox(phase.evaluate(sample.outgoing), sample.weight * sample.pdf));
+  EXPECT_TRUE(
+      isApprox(toColor(phase.evaluate(sample.outgoing).factor), sample.weight * sample.pdf));
 }
 
 INSTANTIATE_TEST_SUITE_P(MeanCosines, HenyeyGreenstein,
@@ -52,10 +53,10 @@ INSTANTIATE_TEST_SUITE_P(MeanCosines, HenyeyGreenstein,
 
 TEST(HenyeyGreensteinExtremes, DirectionHasUnitLengthAndPdfIsFinite) {
   for (const double g : {-0.9999, 0.9999, 0.9999999}) {
-    const PhaseScattering phase(-Vec3::UnitZ(), g, Rgb::Ones());
+    const Scattering phase(-Vec3::UnitZ(), g, Rgb::Ones());
     for (int i = 0; i < 100000; ++i) {
       Random random(8, static_cast<std::uint64_t>(i), 0);
-      const ScatterSample sample = phase.sample(random.uniform2());
+      const ScatterSample sample = phase.sample(0.0, random.uniform2());
       ASSERT_NEAR(sample.outgoing.norm(), 1.0, 1e-12);
       ASSERT_TRUE(std::isfinite(sample.pdf));
       ASSERT_GT(sample.pdf, 0.0);
@@ -70,7 +71,7 @@ struct SurfaceCase {
 
 class Surface : public ::testing::TestWithParam<SurfaceCase> {
 protected:
-  SurfaceScattering surface() const {
+  Scattering surface() const {
     const Vec3 normal = Vec3(0.2, 0.4, -0.9).normalized();
     const Frame frame(normal);
     const double c = GetParam().cosine;
@@ -80,7 +81,7 @@ protected:
 };
 
 TEST_P(Surface, SamplingMatchesPdf) {
-  const SurfaceScattering s = surface();
+  const Scattering s = surface();
   // Sampled directions below the surface have pdf 0: the mass that they have in the glossy lobe is
   // missing from the pdf's integral.
   double lostMass = 0.0;
@@ -94,11 +95,11 @@ TEST_P(Surface, SamplingMatchesPdf) {
         const ScatterSample sample = sampleSurface(s, r);
         return sample.pdf > 0.0 ? sample.outgoing : Vec3(Vec3::Zero());
       },
-      [&](const Vec3& d) { return s.pdf(d); }, 1.0 - lostMass, 100);
+      [&](const Vec3& d) { return s.evaluate(d).pdf; }, 1.0 - lostMass, 100);
 }
 
 TEST_P(Surface, ConservesEnergy) {
-  const SurfaceScattering s = surface();
+  const Scattering s = surface();
   Rgb reflected = Rgb::Zero();
   constexpr int n = 200000;
   for (int i = 0; i < n; ++i) {
@@ -110,8 +111,10 @@ TEST_P(Surface, ConservesEnergy) {
     const int resolution = 400;
     for (int i = 0; i < resolution; ++i)
       for (int j = 0; j < resolution; ++j)
-        sum += s.evaluate(SphereBins::toDirection((i + 0.5) / resolution * SphereBins::rows,
-                                                  (j + 0.5) / resolution * SphereBins::columns)) *
+        sum += toColor(
+                   s.evaluate(SphereBins::toDirection((i + 0.5) / resolution * SphereBins::rows,
+                                                      (j + 0.5) / resolution * SphereBins::columns))
+                       .factor) *
                (4.0 * pi / (resolution * resolution));
     return sum;
   }();
@@ -129,13 +132,13 @@ INSTANTIATE_TEST_SUITE_P(Lobes, Surface,
                                            SurfaceCase{0.5, SurfaceShading::makeCoated(1.0, 0.2)},
                                            SurfaceCase{0.1, SurfaceShading::makeCoated(0.7, 1.0)}));
 
-SurfaceScattering makeSurface(double cosine, const SurfaceShading& shading, const Rgb& albedo) {
+Scattering makeSurface(double cosine, const SurfaceShading& shading, const Rgb& albedo) {
   const Vec3 toViewer(std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
   return {-toViewer, -Vec3::UnitZ(), shading, albedo};
 }
 
 /// Directional albedo: the reflected fraction of a uniform environment's light.
-double estimateAlbedo(const SurfaceScattering& surface) {
+double estimateAlbedo(const Scattering& surface) {
   double sum = 0.0;
   constexpr int n = 100000;
   for (int i = 0; i < n; ++i) {
@@ -161,17 +164,20 @@ TEST(Coat, IsReciprocal) {
   const SurfaceShading shading = SurfaceShading::makeCoated(0.8, 0.3);
   const Vec3 a(0.6, 0.0, 0.8), b(0.0, std::sqrt(0.99), 0.1);
   const Rgb albedo(0.9, 0.6, 0.3);
-  const Rgb forward = SurfaceScattering(-a, -Vec3::UnitZ(), shading, albedo).evaluate(b) / b.z();
-  const Rgb backward = SurfaceScattering(-b, -Vec3::UnitZ(), shading, albedo).evaluate(a) / a.z();
+  const auto reflect = [&](const Vec3& viewer, const Vec3& to) -> Rgb {
+    return toColor(Scattering(-viewer, -Vec3::UnitZ(), shading, albedo).evaluate(to).factor) /
+           to.z();
+  };
+  const Rgb forward = reflect(a, b), backward = reflect(b, a);
   EXPECT_TRUE(isApprox(forward, backward, 1e-12)) << forward << "\n" << backward;
 }
 
 TEST(SurfaceNormal, FacesTheIncomingPath) {
   const SurfaceShading matte{1.0, 0.0, 10.0, 0.5};
   for (const Vec3& gradient : {Vec3(0, 0, 2), Vec3(0, 0, -2)}) {
-    const SurfaceScattering s(Vec3(0, 0, -1), gradient, matte, Rgb::Ones());
-    EXPECT_NEAR(s.pdf(Vec3::UnitZ()), 1.0 / pi, 1e-12);
-    EXPECT_EQ(s.pdf(-Vec3::UnitZ()), 0.0);
+    const Scattering s(Vec3(0, 0, -1), gradient, matte, Rgb::Ones());
+    EXPECT_NEAR(s.evaluate(Vec3::UnitZ()).pdf, 1.0 / pi, 1e-12);
+    EXPECT_EQ(s.evaluate(-Vec3::UnitZ()).pdf, 0.0);
   }
 }
 

@@ -1,4 +1,4 @@
-#include "model/volume/Volume.h"
+#include "model/volume/Field.h"
 
 #include "Approx.h"
 #include "base/Random.h"

@@ -52,14 +52,12 @@ Vec3 evaluateCut(const ClipDepth& clip, const Vec3& world) {
   Vec2 slope = Vec2::Zero();
   if (clip.lookup == ClipDepth::Lookup::linear)
     slope = clip.buffer->gradient(clip.buffer->cell(at.head<2>()));
-  double forward = 1.0;
-  if (camera.pose().projection == Projection::perspective) {
-    forward += slope.dot(at.head<2>()) / at.z();
-    slope *= camera.targetDepth() / at.z();
-  }
-  const Vec3 gradient =
-      forward * camera.forward() - slope.x() * camera.right() - slope.y() * camera.up();
-  return cutSlope * gradient.normalized();
+  const scalar::ViewPoints view{at.x(), at.y(), at.z(), camera.targetDepth() / at.z(), false};
+  const bool perspective = camera.pose().projection == Projection::perspective;
+  const scalar::Float3 gradient =
+      scalar::distanceGradient(perspective, camera.targetDepth(), view, slope.x(), slope.y());
+  const Mat3 fromView(camera.right(), camera.up(), camera.forward());
+  return cutSlope * (fromView * toVector(gradient)).normalized();
 }
 
 /// Position of a box relative to the half-space in front of the camera.

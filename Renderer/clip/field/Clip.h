@@ -6,6 +6,7 @@
 // handle two kinds only. Surface, cutaway and hole differ in how they fill the depth map outside
 // the focus; ghosts and soft edges differ in ClipEdge.
 
+#include "base/ScalarMath.h"
 #include "clip/field/DepthPyramid.h"
 #include "clip/field/SilhouetteCells.h"
 #include "clip/focus/DepthBuffer.h"
@@ -16,6 +17,12 @@
 #include <variant>
 #include <vector>
 
+namespace fenestra::core::scalar {
+#include "formulas/ClipTable.inl"
+// Uses it:
+#include "formulas/Clip.inl"
+} // namespace fenestra::core::scalar
+
 namespace fenestra::core {
 
 /// Profile of the clip weight across the surface.
@@ -25,9 +32,7 @@ struct ClipEdge {
 
   /// Weight at `distance` mm behind the surface; negative: in front.
   double operator()(double distance) const {
-    if (distance < 0.0)
-      return ghost;
-    return distance < softness ? ghost + (1.0 - ghost) * (distance / softness) : 1.0;
+    return scalar::edgeWeight(ghost, softness > 0.0 ? 1.0 / softness : 0.0, distance);
   }
   /// True if the weight rises at `distance`.
   bool isRamp(double distance) const { return distance >= 0.0 && distance < softness; }
@@ -126,12 +131,10 @@ inline constexpr double cutSlope = 0.8;
 ///   cutSlope n   for 0 <= d < softness, else 0
 /// where d is the signed distance behind the surface, mm, and n = grad(d) / |grad(d)| is the unit
 /// normal of the cut, pointing into the remaining medium. For a plane, n is its negated normal. For
-/// a depth buffer, with view axes (right, up, forward), (x, y) as in toBuffer, and D the depth of
-/// the surface, linear between samples (also in silhouette cells),
-///   grad(d) = (-D_x, -D_y, 1)                                         orthographic,
-///   grad(d) = (-s D_x, -s D_y, 1 + (x D_x + y D_y) / z), s = target's depth / z   perspective.
-/// With Lookup::nearest there is no slope: n is the camera's forward axis. A hard edge adds
-/// nothing, since it has no depth in which paths could scatter.
+/// a depth buffer, grad(d) is that of formulas/Clip.inl, (x, y) as in toBuffer, and the depth of
+/// the surface linear between samples (also in silhouette cells). With Lookup::nearest there is no
+/// slope: n is the camera's forward axis. A hard edge adds nothing, since it has no depth in which
+/// paths could scatter.
 Vec3 cutGradient(const Clip& clip, const Vec3& world);
 
 /// Interval of a camera ray, t >= 0, behind the clip's surface. A hard edge removes the rest.

@@ -170,14 +170,14 @@ private:
       return std::nullopt;
     const double probability = at.medium.surfaceProbability;
     Rgb factor = Rgb::Zero();
+    const auto add = [&](double weight, const Scattering& scattering) {
+      factor += weight * toColor(scattering.evaluate(light->direction).factor);
+    };
     if (probability < 1.0)
-      factor += (1.0 - probability) *
-                PhaseScattering(at.incoming, at.medium.transfer->g, at.medium.albedo)
-                    .evaluate(light->direction);
+      add(1.0 - probability, {at.incoming, at.medium.transfer->g, at.medium.albedo});
     if (probability > 0.0)
-      factor += probability * SurfaceScattering(at.incoming, at.medium.gradient,
-                                                *at.medium.transfer->shading, at.medium.albedo)
-                                  .evaluate(light->direction);
+      add(probability,
+          {at.incoming, at.medium.gradient, *at.medium.transfer->shading, at.medium.albedo});
     const Rgb radiance = factor * light->radiance * (at.hit / (light->pdf * samples));
     if (!(radiance.maxCoeff() > 0.0))
       return std::nullopt;

@@ -21,9 +21,9 @@ public:
       : m_medium(medium),
         m_origin(load3(rays.origin, first)),
         m_direction(load3(rays.direction, first)),
-        m_way{DdaAxis::fromRay(medium.axes[0], m_origin.x, m_direction.x),
-              DdaAxis::fromRay(medium.axes[1], m_origin.y, m_direction.y),
-              DdaAxis::fromRay(medium.axes[2], m_origin.z, m_direction.z)},
+        m_way{makeDdaAxis(medium.axes[0], m_origin.x, m_direction.x),
+              makeDdaAxis(medium.axes[1], m_origin.y, m_direction.y),
+              makeDdaAxis(medium.axes[2], m_origin.z, m_direction.z)},
         m_end(load(&rays.length[first])),
         m_minStep(narrow(stepScale * MarchAccuracy::minVoxels) /
                   sqrt(dot(m_direction, m_direction))),
@@ -184,7 +184,7 @@ private:
 void marchCameraAll(const SimdMedium& medium, const SimdShading& shading, MarchBatch& batch) {
   // Behind a sharp edge the clip weight is 1, and camera rays start there. With a ghost or with
   // unclipped components they start in front of it.
-  const bool usesClip = medium.ghost > 0.0F || medium.softness > 0.0F ||
+  const bool usesClip = medium.clip.ghost > 0.0F || medium.clip.softness > 0.0F ||
                         (medium.mixture && medium.mixture->hasUnclipped);
   const auto march = [&]<typename Voxel>(const Voxel*) {
     for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {

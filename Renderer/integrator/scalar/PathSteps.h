@@ -19,6 +19,10 @@
 
 #include <optional>
 
+namespace fenestra::core::scalar {
+#include "formulas/Paths.inl"
+} // namespace fenestra::core::scalar
+
 namespace fenestra::core {
 
 struct PathSettings {
@@ -26,9 +30,6 @@ struct PathSettings {
   std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max(); ///< maximum of scatterings
   bool wantNormals = false; ///< fill PathSample::normal even without surface shading
 };
-
-/// Throughput (root mean square of its components) below which Russian roulette applies.
-inline constexpr double rouletteThreshold = 0.5;
 
 /// State of a path: its next ray, and the sample accumulated so far.
 struct Path {
@@ -99,7 +100,8 @@ public:
       recordFirstHit(path, distance, medium);
     const Scattering scattering = chooseScattering(path.ray.direction, medium, path.uChoices.x());
     std::optional<ShadowRay> light = sampleLight(point, scattering, path);
-    const ScatterSample scattered = sampleScattering(scattering, path.uDirection, path.random);
+    const double choice = scattering.isSurface() ? path.random.uniform() : 0.0;
+    const ScatterSample scattered = scattering.sample(choice, path.uDirection);
     path.uDirection = path.random.uniform2();
     path.uChoices = path.random.uniform2();
     path.throughput *= scattered.weight;
@@ -120,18 +122,16 @@ private:
     PathSample& sample = path.sample;
     sample.depth = m_cameraRays.depth(path.ray, distance);
     sample.albedo = medium.albedo;
-    const double slope = medium.gradient.norm();
-    if (slope > 0.0)
-      sample.normal =
-          medium.gradient / (path.ray.direction.dot(medium.gradient) < 0.0 ? slope : -slope);
+    sample.normal =
+        toVector(scalar::makeNormal(medium.gradient, path.ray.direction.dot(medium.gradient), 1.0));
   }
 
   static Scattering chooseScattering(const Vec3& incoming, const MediumSample& medium,
                                      double choice) {
     const TransferFunction& transfer = *medium.transfer;
     if (choice < medium.surfaceProbability)
-      return SurfaceScattering(incoming, medium.gradient, *transfer.shading, medium.albedo);
-    return PhaseScattering(incoming, transfer.g, medium.albedo);
+      return {incoming, medium.gradient, *transfer.shading, medium.albedo};
+    return {incoming, transfer.g, medium.albedo};
   }
 
   /// Next-event estimation: samples one light, weighted by the balance heuristic against scattering
@@ -142,12 +142,11 @@ private:
         m_lights.sample(point, path.uChoices.y(), path.random.uniform2());
     if (!light)
       return std::nullopt;
-    const Rgb factor = evaluateScattering(scattering, light->direction);
-    if (!(factor.maxCoeff() > 0.0) || !(light->radiance.maxCoeff() > 0.0))
+    const Rgb radiance =
+        toColor(scalar::weighLight(light->radiance, light->pdf, light->isDelta,
+                                   scattering.evaluate(light->direction), path.throughput));
+    if (!(radiance.maxCoeff() > 0.0))
       return std::nullopt;
-    const double other =
-        light->isDelta ? 0.0 : fenestra::core::scatteringPdf(scattering, light->direction);
-    const Rgb radiance = path.throughput * factor * light->radiance / (light->pdf + other);
     return ShadowRay{{point, light->direction}, light->distance, radiance};
   }
 
@@ -155,7 +154,7 @@ private:
   /// next-event estimation.
   Rgb emittedAlongRay(const Ray& ray, double distance, double scatterPdf) const {
     const auto weigh = [&](const EmitterHit& hit) -> Rgb {
-      return hit.radiance * (scatterPdf / (scatterPdf + hit.pdf));
+      return hit.radiance * scalar::weighScattering(scatterPdf, hit.pdf);
     };
     Rgb sum = m_lights.sumEmitterHits(ray, distance, weigh);
     if (distance == infinity)
@@ -163,16 +162,10 @@ private:
     return sum;
   }
 
-  /// Russian roulette on throughput. Its square measures what the path adds to the variance.
   static void playRoulette(Path& path) {
-    const double rms = std::sqrt(path.throughput.square().mean());
-    if (rms >= rouletteThreshold)
-      return;
-    const double chance = rms / rouletteThreshold;
-    if (path.random.uniform() < chance)
-      path.throughput /= chance;
-    else
-      path.throughput.setZero();
+    const double chance = scalar::keepProbability(path.throughput);
+    if (chance < 1.0)
+      path.throughput *= path.random.uniform() < chance ? 1.0 / chance : 0.0;
   }
 
   Affine m_worldToIndex;

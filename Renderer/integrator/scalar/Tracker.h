@@ -4,6 +4,7 @@
 // no step size.
 
 #include "base/Random.h"
+#include "base/ScalarMath.h"
 #include "integrator/scalar/Counters.h"
 #include "integrator/scalar/MajorantGrid.h"
 #include "integrator/scalar/StopFlag.h"
@@ -12,6 +13,10 @@
 #include "model/volume/GridWalk.h"
 
 #include <utility>
+
+namespace fenestra::core::scalar {
+#include "formulas/Tracking.inl"
+} // namespace fenestra::core::scalar
 
 namespace fenestra::core {
 
@@ -33,12 +38,11 @@ double findRealCollision(Walk&& walk, double acceptance, Random& random) {
 /// Transmittance by ratio tracking (Novák et al. 2014), with Russian roulette below 0.4.
 template <typename Walk>
 double trackRatio(Walk&& walk, Random& random) {
-  constexpr double rouletteThreshold = 0.4;
   double ratio = 1.0;
   walk([&](double, double realProbability) {
-    ratio *= std::max(0.0, 1.0 - realProbability);
-    if (ratio < rouletteThreshold)
-      ratio = random.uniform() * rouletteThreshold < ratio ? rouletteThreshold : 0.0;
+    ratio = scalar::attenuate(ratio, realProbability, 1.0);
+    if (ratio < scalar::leastRatio)
+      ratio = scalar::playRatioRoulette(ratio, random.uniform());
     return ratio > 0.0;
   });
   return ratio;

@@ -48,8 +48,8 @@ void beginAll(const SimdMedium& medium, const CameraTable& camera, const CameraS
     const Float3 world = depthPerLength * toward;
     const Float3 direction = mapDirection(camera.toIndex, world);
     const Float3 point = at(camera.point, camera.pointPerColumn, camera.pointPerRow);
-    LaneIntervals inside{clampZero(load(&samples.from[i])), load(&samples.to[i])};
-    inside.clip(medium, point, direction);
+    const LaneIntervals inside = clipToDomain(
+        medium, {clampZero(load(&samples.from[i])), load(&samples.to[i])}, point, direction);
     const LaneMask isInside = inside.begin < inside.end;
     const Float entry = zeroUnless(isInside, inside.begin);
 

@@ -106,10 +106,9 @@ private:
     const Float3& f = m_corner.fractions;
     const auto slice = [&](std::size_t i) {
       const Int row = bytes[i], next = bytes[i + 1];
-      return lerp(
-          lerp(toFloat(row & 0xff), toFloat(shiftRight<8>(row) & 0xff), f.x),
-          lerp(toFloat(shiftRight<8>(next) & 0xff), toFloat(shiftRight<16>(next) & 0xff), f.x),
-          f.y);
+      return core::HWY_NAMESPACE::interpolate(
+          toFloat(row & 0xff), toFloat(shiftRight<8>(row) & 0xff),
+          toFloat(shiftRight<8>(next) & 0xff), toFloat(shiftRight<16>(next) & 0xff), f.x, f.y);
     };
     return lerp(slice(0), slice(2), f.z) * (1.0F / 255.0F);
   }

@@ -2,7 +2,7 @@
 // Lookups-inl.h.
 
 #include "integrator/simd/EnvironmentSampler-inl.h"
-#include "model/lights/LightFormulas-inl.h"
+#include "model/lights/LightLoops-inl.h"
 
 /// EmitterHit, one per lane.
 struct LaneEmitterHit {
@@ -63,16 +63,14 @@ inline Float3 emittedAlongRay(const SimdShading& shading, LaneMask which, const 
   Float3 sum{0.0F, 0.0F, 0.0F};
   intersectLights(shading.lights, which, origin, direction, distance,
                   [&](LaneMask hits, const Float3& radiance, Float pdf) {
-                    const Float weight = scatterPdf / (scatterPdf + pdf);
-                    sum = sum + zeroUnless(hits, weight * radiance);
+                    sum = sum + zeroUnless(hits, weighScattering(scatterPdf, pdf) * radiance);
                   });
-  const LaneMask escaped = which & (distance == std::numeric_limits<float>::infinity());
+  const LaneMask escaped = which & (distance == infiniteReal);
   if (shading.maps.empty())
     return sum + zeroUnless(escaped, evaluateSkies(shading.lights, direction));
   if (!escaped.any())
     return sum;
   const LaneEmitterHit far = evaluateEnvironment(
       shading, direction, [&](const EnvironmentTables& map) { return findTexel(map, direction); });
-  const Float weight = scatterPdf / (scatterPdf + far.pdf);
-  return sum + zeroUnless(escaped, weight * far.radiance);
+  return sum + zeroUnless(escaped, weighScattering(scatterPdf, far.pdf) * far.radiance);
 }

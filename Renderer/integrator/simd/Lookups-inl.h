@@ -24,8 +24,6 @@ namespace fenestra::core::HWY_NAMESPACE {
 // Shading and mixtures:
 #include "integrator/simd/Mixture-inl.h"
 #include "integrator/simd/Shading-inl.h"
-// Traversal of majorant cells:
-#include "integrator/simd/DdaAxis-inl.h"
 } // namespace fenestra::core::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -1,15 +1,10 @@
 // Look-ups at points in index space: scalar, extinction, majorant cell, domain.
 
-/// A point along one axis of a grid, clamped in the outer half voxel.
-struct AxisPosition {
-  Float lower;    ///< index of the voxel below, an integer
-  Float fraction; ///< distance from it, 0 to 1
-};
+#include "formulas/Interpolation.inl"
+#include "formulas/Tracking.inl"
+
 HWY_INLINE AxisPosition locateOnAxis(const SimdAxis& a, Float x) {
-  // This order of min and max maps NaN to 0.
-  const Float inside = max(min(x, a.last), 0.0F);
-  const Float lower = min(floor(inside), a.lastCell);
-  return {lower, inside - lower};
+  return locateOnAxis(a.last, a.lastCell, x);
 }
 /// Offset of a voxel or brick in its array.
 HWY_INLINE Int voxelOffset(const SimdAxes& axes, Float x, Float y, Float z) {
@@ -39,17 +34,9 @@ HWY_INLINE Pairs loadVoxels(const SimdField& field, Int first, const Indices& in
   }
 }
 
-/// Four values per lane, of voxels, rows or slices.
-struct LaneQuad {
-  Float values[4];
-
-  HWY_INLINE Float& operator[](std::int32_t i) { return values[i]; }
-  HWY_INLINE Float operator[](std::int32_t i) const { return values[i]; }
-};
-
 /// Each lane's four voxels from its index + `offset` on, along x. All must exist.
 template <typename Voxel>
-HWY_INLINE LaneQuad loadRow(const SimdField& field, const Indices& index, std::int32_t offset) {
+HWY_INLINE Float4 loadRow(const SimdField& field, const Indices& index, std::int32_t offset) {
   const auto* const voxels = static_cast<const Voxel*>(field.voxels) + offset;
   if constexpr (std::is_same_v<Voxel, float>) {
     const Pairs low = loadPairs(voxels, index), high = loadPairs(voxels + 2, index);
@@ -85,11 +72,9 @@ HWY_INLINE Float interpolateScalar(const SimdField& field, const Float3& p) {
   const Pairs behind = loadVoxels<Voxel>(field, first, index, deep);
   const Pairs last = loadVoxels<Voxel>(field, first, index, deep + up);
   const Float f = x.fraction;
-  const Float low =
-      lerp(lerp(near.first, near.second, f), lerp(above.first, above.second, f), y.fraction);
-  const Float high =
-      lerp(lerp(behind.first, behind.second, f), lerp(last.first, last.second, f), y.fraction);
-  return lerp(low, high, z.fraction);
+  return lerp(interpolate(near.first, near.second, above.first, above.second, f, y.fraction),
+              interpolate(behind.first, behind.second, last.first, last.second, f, y.fraction),
+              z.fraction);
 }
 
 /// The segment of a table that contains a scalar.
@@ -161,43 +146,41 @@ HWY_INLINE LaneCells loadCells(const SimdMedium& medium, Float x, Float y, Float
           toFloat(code & SimdMajorants::radiusBits), code < 0};
 }
 
-/// Parts of rays, one per lane; t in mm.
-struct LaneIntervals {
-  Float begin, end;
+/// A ray's traversal along one axis, from its origin and direction there (index space).
+HWY_INLINE DdaAxis makeDdaAxis(const SimdMedium::Axis& axis, Float origin, Float direction) {
+  return makeDdaAxis(axis.cellsPerVoxel, axis.insideCells, origin, direction);
+}
+/// t at which rays leave their cell and all cells within its skip radius. `cell` receives the cell.
+HWY_INLINE Float findCellExit(const SimdMedium& scene, const DdaAxis (&axes)[3], Float t,
+                              LaneCells& cell) {
+  const Float x = floor(positionAt(axes[0], t));
+  const Float y = floor(positionAt(axes[1], t));
+  const Float z = floor(positionAt(axes[2], t));
+  cell = loadCells(scene, x, y, z);
+  const Float reach = cell.skipRadius + 0.5F;
+  return min(min(exitDistance(axes[0], x, reach), exitDistance(axes[1], y, reach)),
+             exitDistance(axes[2], z, reach));
+}
 
-  /// Intersects with the domain (Domain::clip). Rays are in index space.
-  HWY_INLINE void clip(const SimdMedium& medium, const Float3& origin, const Float3& direction) {
-    clip(medium.lower, medium.upper, origin, direction);
-    if (const std::optional<AffineRows>& toCrop = medium.toCrop)
-      clip({-1.0F, -1.0F, -1.0F}, {1.0F, 1.0F, 1.0F}, mapPoint(*toCrop, origin),
-           mapDirection(*toCrop, direction));
-  }
-
-private:
-  /// Intersects with a box. A ray that lies in a face counts as inside.
-  HWY_INLINE void clip(const Float3& lower, const Float3& upper, const Float3& origin,
-                       const Float3& direction) {
-    const auto clipAxis = [&](Float low, Float high, Float o, Float d) {
-      constexpr float infinite = std::numeric_limits<float>::infinity();
-      const LaneMask isParallel = d == 0.0F, isBackward = d < 0.0F;
-      const LaneMask inside = (low <= o) & (o <= high);
-      const Float near = (select(isBackward, high, low) - o) / d;
-      const Float far = (select(isBackward, low, high) - o) / d;
-      begin = max(begin, select(isParallel, select(inside, -infinite, infinite), near));
-      end = min(end, select(isParallel, infinite, far));
-    };
-    clipAxis(lower.x, upper.x, origin.x, direction.x);
-    clipAxis(lower.y, upper.y, origin.y, direction.y);
-    clipAxis(lower.z, upper.z, origin.z, direction.z);
-  }
-};
+/// Intersects rays, in index space, with the domain (Domain::clip).
+HWY_INLINE LaneIntervals clipToDomain(const SimdMedium& medium, LaneIntervals t,
+                                      const Float3& origin, const Float3& direction) {
+  const auto clip = [&](const auto& lower, const auto& upper, const Float3& o, const Float3& d) {
+    t = clipToSlab(t, lower[0], upper[0], o.x, d.x);
+    t = clipToSlab(t, lower[1], upper[1], o.y, d.y);
+    t = clipToSlab(t, lower[2], upper[2], o.z, d.z);
+  };
+  clip(medium.lower, medium.upper, origin, direction);
+  constexpr float edge[3] = {1.0F, 1.0F, 1.0F}, opposite[3] = {-1.0F, -1.0F, -1.0F};
+  if (const std::optional<AffineRows>& toCrop = medium.toCrop)
+    clip(opposite, edge, mapPoint(*toCrop, origin), mapDirection(*toCrop, direction));
+  return t;
+}
 
 /// Length (mm) of a ray up to the domain's end; 0 if rounding put the origin outside.
 HWY_INLINE Float lengthInDomain(const SimdMedium& medium, const Float3& origin,
                                 const Float3& direction) {
-  LaneIntervals inside{0.0F, std::numeric_limits<float>::infinity()};
-  inside.clip(medium, origin, direction);
-  return clampZero(inside.end);
+  return clampZero(clipToDomain(medium, {0.0F, infiniteReal}, origin, direction).end);
 }
 
 /// Lanes whose point (index space) lies in the focus, where the context style does not apply.

@@ -5,7 +5,7 @@
 namespace fenestra::core {
 namespace {
 
-SimdMedium::DepthAxis toSimd(const DepthAxis& axis) {
+single::DepthTable toTable(const DepthAxis& axis) {
   return {narrow(1.0 / axis.pitch),
           narrow(axis.start),
           static_cast<float>(axis.inside - 1),
@@ -16,8 +16,7 @@ SimdMedium::DepthAxis toSimd(const DepthAxis& axis) {
 
 /// Row of an affine map from index space: normal . (world point - from) + offset. `normal` and
 /// `from` are in world space.
-std::array<float, 4> makeRow(const Grid& grid, const Vec3& normal, const Vec3& from,
-                             double offset) {
+AffineRow makeRow(const Grid& grid, const Vec3& normal, const Vec3& from, double offset) {
   const Vec3 n = grid.indexToWorld.linear().transpose() * normal;
   const double o = normal.dot(grid.indexToWorld.translation() - from) + offset;
   return {narrow(n.x()), narrow(n.y()), narrow(n.z()), narrow(o)};
@@ -65,16 +64,17 @@ void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
   if (!plane && !depth)
     return;
   const ClipEdge& edge = plane ? plane->edge : depth->edge;
-  medium.ghost = narrow(edge.ghost);
-  medium.softness = narrow(edge.softness);
-  medium.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
+  medium.clip.ghost = narrow(edge.ghost);
+  medium.clip.softness = narrow(edge.softness);
+  medium.clip.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
   medium.cutSlope = edge.softness > 0.0 ? narrow(cutSlope) : 0.0F;
   const Camera& camera = plane ? plane->camera : depth->camera;
   const Vec3& from = camera.pose().position;
-  medium.perspective = camera.pose().projection == Projection::perspective;
-  medium.targetDepth = narrow(camera.targetDepth());
-  medium.toView = {makeRow(grid, camera.right(), from, 0.0), makeRow(grid, camera.up(), from, 0.0),
-                   makeRow(grid, camera.forward(), from, -camera.targetDepth())};
+  medium.clip.perspective = camera.pose().projection == Projection::perspective;
+  medium.clip.targetDepth = narrow(camera.targetDepth());
+  medium.clip.toView = {makeRow(grid, camera.right(), from, 0.0),
+                        makeRow(grid, camera.up(), from, 0.0),
+                        makeRow(grid, camera.forward(), from, -camera.targetDepth())};
   medium.fromView = affineRows(Affine(Mat3(camera.right(), camera.up(), camera.forward())));
   if (plane) {
     medium.clipKind = SimdMedium::ClipKind::plane;
@@ -85,8 +85,8 @@ void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
   medium.clipKind = depth->lookup == ClipDepth::Lookup::linear ? SimdMedium::ClipKind::depthLinear
                                                                : SimdMedium::ClipKind::depthNearest;
   medium.cutNormal = narrow3(camera.forward());
-  medium.depthX = toSimd(depth->buffer->xAxis());
-  medium.depthY = toSimd(depth->buffer->yAxis());
+  medium.clip.depthX = toTable(depth->buffer->xAxis());
+  medium.clip.depthY = toTable(depth->buffer->yAxis());
   medium.depths = depth->buffer->depthsFromReference().data();
   medium.depthColumns = static_cast<std::int32_t>(depth->buffer->columns());
   medium.silhouette = depth->silhouette.get();

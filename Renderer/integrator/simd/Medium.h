@@ -15,6 +15,12 @@ namespace fenestra::core {
 
 class SilhouetteCells;
 
+/// Tables of the formulas in float.
+namespace single {
+using Real = float;
+#include "formulas/ClipTable.inl"
+} // namespace single
+
 /// Voxels for interpolation.
 struct SimdField {
   const void* voxels = nullptr;
@@ -33,11 +39,6 @@ struct SimdMedium {
     float cellsPerVoxel; ///< 1 / cellEdge
     float insideCells;   ///< largest float below the number of cells
     float cellStride;    ///< offset of the next cell in SimdMajorants::codes
-  };
-  /// Samples of the clip's depth buffer along one axis: members of fenestra::core::DepthAxis
-  /// (clip/focus/DepthBuffer.h) or, with "per", 1 / them; last = size - 1, lastInside = inside - 1.
-  struct DepthAxis {
-    float perPitch, start, lastInside, before, perFactor, last;
   };
   enum class ClipKind { none, plane, depthLinear, depthNearest };
   /// ContextStyle (model/medium/ContextStyle.h) in float.
@@ -68,19 +69,12 @@ struct SimdMedium {
   std::optional<Context> context = {};
 
   ClipKind clipKind = ClipKind::none;
-  float ghost = 0.0F;                  ///< ClipEdge
-  float softness = 0.0F;               ///< mm
-  float perSoftness = 0.0F;            ///< 1 / mm; 0: sharp edge
+  single::ClipTable clip = {};
   float cutSlope = 0.0F;               ///< length of the cut's gradient, mm^-1; 0: sharp edge
   std::array<float, 3> cutNormal = {}; ///< world, into the medium: of a plane; else view axis
-  bool perspective = false;
-  /// Rows of the map from index space to view space. Depth is relative to the target.
-  AffineRows toView = {};
-  AffineRows fromView = {};          ///< directions: view space to world
-  std::array<float, 4> toPlane = {}; ///< distance from the plane, mm; > 0: removed
-  float targetDepth = 0.0F;
-  DepthAxis depthX = {}, depthY = {};
-  const float* depths = nullptr; ///< mm, relative to the target
+  AffineRows fromView = {};            ///< directions: view space to world
+  std::array<float, 4> toPlane = {};   ///< distance from the plane, mm; > 0: removed
+  const float* depths = nullptr;       ///< mm, relative to the target
   std::int32_t depthColumns = 0;
   const SilhouetteCells* silhouette = nullptr; ///< for an exact boundary; else null
 };

@@ -1,5 +1,12 @@
 // Components of a mixture at points in index space.
 
+/// Turns a bool into a compile-time constant for std::visit.
+inline std::variant<std::false_type, std::true_type> toConstant(bool value) {
+  if (value)
+    return std::true_type();
+  return std::false_type();
+}
+
 /// Extinction (mm^-1) of one component per lane, at label weight 1.
 HWY_INLINE Float evalExtinction(const SimdLines& table, LaneMask which, Int components,
                                 Float scalar) {
@@ -88,20 +95,4 @@ inline Int sampleComponents(const SimdMedium& medium, LaneMask which, const Floa
     left = left - part;
   });
   return sampled;
-}
-
-/// BsdfParameters of one component per lane. All count as coated; a coat may have reflectance 0.
-inline BsdfParameters<Float> gatherBsdfs(const SimdShading& shading, Int components) {
-  constexpr std::int32_t stride = sizeof(BsdfParameters<float>) / sizeof(float);
-  const Int at = components * stride;
-  const BsdfParameters<float>& first = shading.bsdfs.front();
-  const auto each = [&](const float& member) { return gather(&member, at); };
-  return {each(first.g),
-          each(first.diffuse),
-          each(first.specular),
-          each(first.f0),
-          each(first.oddsFactor),
-          each(first.roughness),
-          true,
-          {each(first.coat[0]), each(first.coat[1]), each(first.coat[2]), each(first.coat[3])}};
 }

@@ -9,7 +9,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::core::HWY_NAMESPACE {
 #include "integrator/simd/LightSet-inl.h"
-#include "model/medium/ScatteringFormulas-inl.h"
 namespace {
 
 /// Random numbers of one path per lane: hashes of a counter and a key.
@@ -17,7 +16,7 @@ struct PathRandom {
   UInt key, counter;
 
   HWY_INLINE UInt nextBits() {
-    counter = counter + 0x9e3779b9U;
+    counter = nextCounter(counter);
     return mixBits(counter ^ key);
   }
   HWY_INLINE Float uniform() { return toUniform(nextBits()); }
@@ -36,7 +35,8 @@ struct Collisions {
   Int component = 0; ///< sampled from a mixture
 };
 
-template <typename Voxel>
+/// `isMixed`: the medium is a mixture.
+template <typename Voxel, bool isMixed>
 class VertexHandler {
 public:
   VertexHandler(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths,
@@ -62,7 +62,7 @@ private:
     const Float3 origin = load3(m_paths.rays.origin, i);
     addEmitted(i, isValid.without(first), origin, distance);
 
-    const LaneMask escaped = distance == std::numeric_limits<float>::infinity();
+    const LaneMask escaped = distance == infiniteReal;
     const LaneMask canScatter = bounces < m_shading.bounces;
     const LaneMask active = (isValid & canScatter).without(escaped);
     m_collisions += active.count();
@@ -95,25 +95,23 @@ private:
     const Collisions at = lookUpMedium(i, active, first, index, random);
     if (first.any())
       recordFirstHit(i, at, distance);
-    return m_medium.mixture ? scatter(i, at, random, gatherBsdfs(m_shading, at.component))
-                            : scatter(i, at, random, m_shading.bsdfs[0]);
+    return scatter(i, at, random);
   }
 
-  /// Scatters by the given BSDF parameters; returns the lanes whose path continues.
-  template <typename Number>
-  HWY_INLINE LaneMask scatter(std::size_t i, const Collisions& at, PathRandom& random,
-                              const BsdfParameters<Number>& bsdf) {
-    const PhaseLobe<Number> phase(bsdf.g, at.incoming, at.albedo);
+  /// Returns the lanes whose path continues.
+  HWY_INLINE LaneMask scatter(std::size_t i, const Collisions& at, PathRandom& random) {
+    const Bsdf bsdf = loadBsdfs<isMixed>(m_shading, at.component);
+    const PhaseLobe phase = makePhaseLobe(bsdf.g, at.incoming, at.albedo);
     const bool surfaces = at.surface.any();
     const auto surface = [&] {
-      return SurfaceLobes<Number>(bsdf, at.incoming, at.gradient, at.albedo);
+      return makeSurfaceLobes(bsdf, at.incoming, at.gradient, at.albedo);
     };
     if (m_shading.hasSampledLights)
       sampleLights(i, at, random, [&](const Float3& toward) {
-        const ScatterEval ofPhase = phase.evaluate(toward);
+        const ScatterEval ofPhase = evaluate(phase, toward);
         if (!surfaces)
           return ofPhase;
-        const ScatterEval ofSurface = surface().evaluate(toward);
+        const ScatterEval ofSurface = evaluate(surface(), toward);
         return ScatterEval{select(at.surface, ofSurface.factor, ofPhase.factor),
                            select(at.surface, ofSurface.pdf, ofPhase.pdf)};
       });
@@ -121,9 +119,9 @@ private:
     const Float choice = m_shading.hybrid ? random.uniform() : 0.0F; // even if no lane needs it
     const Float u = selectGiven(at.first, m_paths.uDirection[0], i, random);
     const Float v = selectGiven(at.first, m_paths.uDirection[1], i, random);
-    ScatterSamples sampled = phase.sample(u, v);
+    ScatterSamples sampled = sampleLobe(phase, u, v);
     if (surfaces) {
-      const ScatterSamples other = surface().sample(choice, u, v);
+      const ScatterSamples other = sampleLobe(surface(), choice, u, v);
       sampled = {select(at.surface, other.outgoing, sampled.outgoing),
                  select(at.surface, other.weight, sampled.weight),
                  select(at.surface, other.pdf, sampled.pdf)};
@@ -139,7 +137,7 @@ private:
                   load(&m_paths.rays.scalar[i]),
                   load3(m_paths.direction, i),
                   load3(m_paths.throughput, i)};
-    if (m_medium.mixture) {
+    if constexpr (isMixed) {
       at.component = sampleComponents(m_medium, active, index, at.scalar, random.uniform());
       at.albedo = evalComponentAlbedo(m_shading, active, at.component, at.scalar);
     } else {
@@ -153,8 +151,7 @@ private:
       if (m_medium.cutSlope > 0.0F)
         at.gradient = at.gradient + cutGradient(m_medium, index, findClippable(at));
       const Float slope = sqrt(dot(at.gradient, at.gradient));
-      const Float chance =
-          oneMinusExp(evalOwnExtinction(at)) * oneMinusExp(m_shading.surfaceRate * slope);
+      const Float chance = surfaceProbability(evalOwnExtinction(at), m_shading.surfaceRate, slope);
       at.surface = active & (selectGiven(first, m_paths.uChoices[0], i, random) < chance);
     }
     return at;
@@ -168,16 +165,18 @@ private:
 
   /// Lanes whose component the clip can remove.
   HWY_INLINE LaneMask findClippable(const Collisions& at) const {
-    return m_medium.mixture
-               ? at.active.without(findUnclipped(*m_medium.mixture, at.active, at.component))
-               : at.active;
+    if constexpr (isMixed)
+      return at.active.without(findUnclipped(*m_medium.mixture, at.active, at.component));
+    else
+      return at.active;
   }
 
   /// Extinction of the component at the collision, at label weight 1.
   HWY_INLINE Float evalOwnExtinction(const Collisions& at) const {
-    return m_medium.mixture
-               ? evalExtinction(m_medium.extinctions, at.active, at.component, at.scalar)
-               : evalExtinction(m_medium.extinctions, at.scalar);
+    if constexpr (isMixed)
+      return evalExtinction(m_medium.extinctions, at.active, at.component, at.scalar);
+    else
+      return evalExtinction(m_medium.extinctions, at.scalar);
   }
 
   Float3 evalGradient(const Float3& p) const {
@@ -211,8 +210,8 @@ private:
     const LightSamples light =
         sampleLightSet(m_shading, at.active, mapPoint(m_shading.toLocal, at.index), choice, u, v);
     const ScatterEval scattered = evaluate(light.direction);
-    const Float pdf = light.pdf + select(light.isDelta, 0.0F, scattered.pdf);
-    const Float3 radiance = (1.0F / pdf) * (at.throughput * scattered.factor * light.radiance);
+    const Float3 radiance =
+        weighLight(light.radiance, light.pdf, light.isDelta, scattered, at.throughput);
     const LaneMask contributes = at.active & (maxComponent(radiance) > 0.0F);
     const std::size_t count = contributes.count();
     const UInt depth = random.nextBits();
@@ -237,10 +236,8 @@ private:
   /// Sets the paths' throughput and next rays. Returns the lanes that survive Russian roulette.
   HWY_INLINE LaneMask continuePath(std::size_t i, const Collisions& at,
                                    const ScatterSamples& sampled, PathRandom& random) {
-    constexpr auto threshold = static_cast<float>(rouletteThreshold);
     Float3 throughput = at.throughput * sampled.weight;
-    const Float rms = sqrt((1.0F / 3.0F) * dot(throughput, throughput));
-    const Float chance = min(rms * (1.0F / threshold), 1.0F);
+    const Float chance = keepProbability(throughput);
     const LaneMask survives = random.uniform() <= chance;
     throughput = zeroUnless(survives, (1.0F / chance) * throughput);
     store3(throughput, m_paths.throughput, i);
@@ -266,10 +263,10 @@ private:
 void scatterAll(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths,
                 ShadowBatch& shadowRays, Counters& counters) {
   std::visit(
-      [&]<typename Voxel>(const Voxel*) {
-        VertexHandler<Voxel>(medium, shading, paths, shadowRays).run(counters);
+      [&]<typename Voxel>(const Voxel*, auto isMixed) {
+        VertexHandler<Voxel, isMixed>(medium, shading, paths, shadowRays).run(counters);
       },
-      medium.voxels);
+      medium.voxels, toConstant(medium.mixture.has_value()));
 }
 
 void dropEndedLanes(PathBatch& paths) {

@@ -7,7 +7,7 @@ bool hasWideLobes(const TransferFunction& transfer) {
   constexpr double minRoughness = 1e-2;
   constexpr double maxG = 0.9999;
   return std::abs(transfer.g) <= maxG &&
-         makeBsdfParameters(transfer.g, transfer.shading).roughness >= minRoughness;
+         makeBsdf(transfer.g, transfer.shading).roughness >= minRoughness;
 }
 
 } // namespace
@@ -52,7 +52,11 @@ SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, con
           std::min<std::uint64_t>(maxBounces, std::numeric_limits<std::int32_t>::max()))),
       lights(set.tables().cast<float>(grid.worldCenter())) {
   const auto add = [&](const TransferFunction& function) {
-    bsdfs.push_back(makeBsdfParameters(function.g, function.shading).cast<float>());
+    const scalar::Bsdf b = makeBsdf(function.g, function.shading);
+    bsdfs.push_back({narrow(b.g), narrow(b.diffuse), narrow(b.specular), narrow(b.f0),
+                     narrow(b.oddsFactor), narrow(b.roughness), narrow(b.coat[0]),
+                     narrow(b.coat[1]), narrow(b.coat[2]), narrow(b.coat[3])});
+    isCoated = isCoated || b.isCoated;
     if (!tinted)
       albedos.emplace_back(function.albedo);
   };

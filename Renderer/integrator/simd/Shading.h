@@ -6,7 +6,7 @@
 #include "integrator/simd/Mixture.h"
 #include "integrator/simd/PiecewiseLinear.h"
 #include "model/lights/LightSet.h"
-#include "model/medium/BsdfParameters.h"
+#include "model/medium/Scattering.h"
 #include "model/medium/Tint.h"
 #include "model/volume/Grid.h"
 
@@ -27,8 +27,10 @@ struct SimdShading {
               std::uint64_t maxBounces, bool normalsWanted, const Tint* tinted = nullptr,
               const Mixture* mixture = nullptr);
 
-  std::vector<BsdfParameters<float>> bsdfs; ///< one; or one per component of a mixture
-  std::vector<SimdTable> albedos;           ///< one; or one per component of a mixture or tint
+  using BsdfNumbers = std::array<float, 10>; ///< of a Bsdf, in the order of its members
+  std::vector<BsdfNumbers> bsdfs;            ///< one; or one per component of a mixture
+  bool isCoated = false;                     ///< some Bsdf is
+  std::vector<SimdTable> albedos;            ///< one; or one per component of a mixture or tint
   std::optional<SimdLabelWeights> tint;
   bool hybrid;       ///< surface shading is on
   float surfaceRate; ///< 25 gamma^3, of Medium's surface probability

@@ -82,8 +82,9 @@ private:
     const Shuffle expand = Shuffle::expand(added);
     const auto loadNext = [&](const auto& column) { return expand(load(&column[first])); };
     for (std::size_t axis = 0; axis < 3; ++axis)
-      m_axes[axis].setIf(added, DdaAxis::fromRay(m_medium.axes[axis], loadNext(m_rays.origin[axis]),
-                                                 loadNext(m_rays.direction[axis])));
+      setAxis(axis, added,
+              makeDdaAxis(m_medium.axes[axis], loadNext(m_rays.origin[axis]),
+                          loadNext(m_rays.direction[axis])));
     m_t.setIf(added, 0.0F);
     m_end.setIf(added, loadNext(m_rays.length));
     m_ratio.setIf(added, 1.0F);
@@ -93,6 +94,14 @@ private:
     m_acceptance.setIf(added, loadNext(m_rays.acceptance));
     m_ray.setIf(added, expand.indices() + static_cast<std::int32_t>(first));
     m_busy = m_busy | added;
+  }
+
+  HWY_INLINE void setAxis(std::size_t axis, LaneMask which, const DdaAxis& next) {
+    DdaAxis& current = m_axes[axis];
+    current.start.setIf(which, next.start);
+    current.speed.setIf(which, next.speed);
+    current.inverse.setIf(which, next.inverse);
+    current.toMiddle.setIf(which, next.toMiddle);
   }
 
   /// Moves each busy lane that waits for no look-up: to a tentative collision within its cell and
@@ -116,14 +125,14 @@ private:
 
     const LaneMask ended = crossed & (stop >= m_end);
     if constexpr (!wantRatio)
-      m_t.setIf(ended, std::numeric_limits<float>::infinity());
+      m_t.setIf(ended, infiniteReal);
     m_busy = m_busy.without(ended); // results stay until storeResults()
   }
 
   /// The lanes' points, index space.
   HWY_INLINE Float3 point() const {
     const auto along = [&](std::size_t axis) {
-      return fms(m_axes[axis].at(m_t), m_medium.axes[axis].cellEdge, 0.5F);
+      return fms(positionAt(m_axes[axis], m_t), m_medium.axes[axis].cellEdge, 0.5F);
     };
     return {along(0), along(1), along(2)};
   }
@@ -148,10 +157,8 @@ private:
     m_acceptance.setIf(hit, uniform(counter));
     m_counter.setIf(hit, counter);
     if constexpr (wantRatio) {
-      constexpr float rouletteThreshold = 0.4F;
-      const Float ratio = m_ratio * clampZero(1.0F - extinction / m_majorant);
-      const Float survived = zeroUnless(u * rouletteThreshold < ratio, rouletteThreshold);
-      m_ratio.setIf(hit, select(ratio < rouletteThreshold, survived, ratio));
+      const Float ratio = attenuate(m_ratio, extinction, m_majorant);
+      m_ratio.setIf(hit, select(ratio < leastRatio, playRatioRoulette(ratio, u), ratio));
       m_busy = m_busy.without(hit & (m_ratio <= 0.0F));
     } else {
       const LaneMask real = hit & (u * m_majorant < extinction);
@@ -237,13 +244,6 @@ void trackBatch(const SimdMedium& medium, RayBatch& rays, const StopFlag& stop,
   }
   for (const Set& set : sets)
     set.addCounts(counters);
-}
-
-/// Turns a bool into a compile-time constant for std::visit.
-std::variant<std::false_type, std::true_type> toConstant(bool value) {
-  if (value)
-    return std::true_type();
-  return std::false_type();
 }
 
 void trackAll(const SimdMedium& medium, RayBatch& rays, bool wantRatio, const StopFlag& stop,

@@ -1,6 +1,12 @@
 #include "model/lights/EnvironmentSampler.h"
 
+#include "base/ScalarMath.h"
+
 #include "base/Random.h"
+
+namespace fenestra::core::scalar {
+#include "formulas/Environment.inl"
+} // namespace fenestra::core::scalar
 
 namespace fenestra::core {
 namespace {
@@ -61,15 +67,10 @@ Rgb EnvironmentSampler::texel(std::size_t index) const {
   return m_light.radiance * Rgb(rgb[0], rgb[1], rgb[2]);
 }
 
-/// EnvironmentMap's layout: u = 1/2 + atan2(d_R, d_A) / (2 pi), v = acos(d_S) / pi from the top,
-/// for d in RAS.
 std::size_t EnvironmentSampler::findTexel(const Vec3& d) const {
-  const int width = m_light.map.width;
-  const int height = m_light.map.height;
-  const double u = 0.5 + std::atan2(d.x(), d.y()) / (2.0 * pi);
-  const double v = std::acos(std::clamp(d.z(), -1.0, 1.0)) / pi;
-  return texelIndex(std::min(static_cast<int>(u * width), width - 1),
-                    std::min(static_cast<int>(v * height), height - 1));
+  const double width = m_light.map.width, height = m_light.map.height;
+  return texelIndex(scalar::texelOnAxis(scalar::columnOfDirection(d, width), width),
+                    scalar::texelOnAxis(scalar::rowOfDirection(d, height), height));
 }
 
 double EnvironmentSampler::texelPdf(std::size_t index) const {
@@ -92,13 +93,11 @@ Vec3 EnvironmentSampler::sample(const Vec2& u) const {
   const CdfSample row = sampleCdf(m_rowCdf, u.x());
   const CdfSample column = sampleCdf(m_columnCdf[static_cast<std::size_t>(row.index)], u.y());
 
-  // Uniform in solid angle inside the texel: uniform in cos(theta) and phi.
   const double top = std::cos(pi * row.index / height);
   const double bottom = std::cos(pi * (row.index + 1) / height);
   const double z = top + (bottom - top) * row.remainder;
-  const double sine = std::sqrt(std::max(0.0, 1.0 - z * z));
-  const double phi = 2.0 * pi * ((column.index + column.remainder) / width - 0.5);
-  return {sine * std::sin(phi), sine * std::cos(phi), z};
+  const double turns = (column.index + column.remainder) / width;
+  return toVector(scalar::directionInTexel(turns, 1.0 - std::abs(z), z < 0.0));
 }
 
 } // namespace fenestra::core

@@ -101,16 +101,16 @@ void LightSet::computePmfs(const Vec3& center) {
 }
 
 std::optional<LightSample> LightSet::sample(const Vec3& point, double choice, const Vec2& u) const {
-  scalar::ScalarMask unsampled = true;
+  scalar::LaneMask unsampled = true;
   const scalar::LightSamples lightSample =
       scalar::sampleLights(m_tables, unsampled, point, choice, u.x(), u.y());
-  if (unsampled.any())
+  if (unsampled)
     return sampleEnvironment(choice, u);
   const Rgb radiance = toColor(lightSample.radiance);
   if (!(radiance.maxCoeff() > 0.0))
     return std::nullopt;
   return LightSample{toVector(lightSample.direction), lightSample.distance, radiance,
-                     lightSample.pdf, lightSample.isDelta.value};
+                     lightSample.pdf, lightSample.isDelta};
 }
 
 std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2& u) const {

@@ -14,7 +14,7 @@
 #include <optional>
 
 namespace fenestra::core::scalar {
-#include "model/lights/LightFormulas-inl.h"
+#include "model/lights/LightLoops-inl.h"
 } // namespace fenestra::core::scalar
 
 namespace fenestra::core {
@@ -64,7 +64,7 @@ public:
   Rgb sumEmitterHits(const Ray& ray, double end, Weigh&& weigh) const {
     Rgb sum = Rgb::Zero();
     scalar::intersectLights(m_tables, true, ray.origin, ray.direction, end,
-                            [&](scalar::ScalarMask, const scalar::Float3& radiance, double pdf) {
+                            [&](scalar::LaneMask, const scalar::Float3& radiance, double pdf) {
                               sum += weigh(EmitterHit{toColor(radiance), pdf});
                             });
     return sum;

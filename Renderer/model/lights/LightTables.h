@@ -12,37 +12,12 @@ struct LightTables {
   using Point = Vector<Real, 3>;
   using Color = Array<Real, 3>;
 
-  struct Area {
-    bool isDisk;
-    Point center, normal;
-    Point right, up;      ///< half edges (disk: radii) as vectors, mm
-    Real perRight, perUp; ///< 1 / squared length of right, up
-    Real area;            ///< mm^2
-    Color radiance;
-    Real pmf; ///< probability that this light is sampled
-  };
-  /// Sampled uniformly over the cone of directions that it subtends; from inside, over all.
-  struct Sphere {
-    Point center;
-    Real radius2; ///< mm^2
-    Color radiance;
-    Real pmf; ///< as above
-  };
-  struct Directional {
-    Point toward; ///< unit, from the scene to the light
-    Color irradiance;
-    Real pmf; ///< as above
-  };
-  struct Sky {
-    Point up;
-    Color middle;
-    Color toTop, toBottom; ///< radiance there minus `middle`
-  };
+#include "formulas/LightTables.inl"
 
-  std::vector<Area> areas;
-  std::vector<Sphere> spheres;
-  std::vector<Directional> directionals;
-  std::vector<Sky> skies;
+  std::vector<PlacedArea> areas;
+  std::vector<PlacedSphere> spheres;
+  std::vector<PlacedDirectional> directionals;
+  std::vector<PlacedSky> skies;
   Color constant = Color::Zero(); ///< sum of all constant environments
 
   /// Converts the tables to another number type, relative to `origin`.
@@ -52,15 +27,15 @@ struct LightTables {
     const auto number = [](Real x) { return static_cast<To>(x); };
     const auto three = [](const auto& x) { return x.template cast<To>(); };
     const auto point = [&](const Point& x) { return three(Point(x - origin)); };
-    for (const Area& a : areas)
+    for (const PlacedArea& a : areas)
       to.areas.push_back({a.isDisk, point(a.center), three(a.normal), three(a.right), three(a.up),
                           number(a.perRight), number(a.perUp), number(a.area), three(a.radiance),
                           number(a.pmf)});
-    for (const Sphere& s : spheres)
+    for (const PlacedSphere& s : spheres)
       to.spheres.push_back({point(s.center), number(s.radius2), three(s.radiance), number(s.pmf)});
-    for (const Directional& d : directionals)
+    for (const PlacedDirectional& d : directionals)
       to.directionals.push_back({three(d.toward), three(d.irradiance), number(d.pmf)});
-    for (const Sky& s : skies)
+    for (const PlacedSky& s : skies)
       to.skies.push_back({three(s.up), three(s.middle), three(s.toTop), three(s.toBottom)});
     to.constant = three(constant);
     return to;

@@ -3,6 +3,7 @@
 #include "base/Distribution.h"
 #include "model/masks/Distances.h"
 #include "model/masks/Rows.h"
+#include "model/volume/Field.h"
 
 #include <algorithm>
 #include <array>

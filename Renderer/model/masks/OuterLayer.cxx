@@ -1,6 +1,7 @@
 #include "model/masks/OuterLayer.h"
 
 #include "model/masks/GaussianBlur.h"
+#include "model/volume/Field.h"
 
 #include <tbb/parallel_for.h>
 

@@ -12,7 +12,7 @@ namespace {
 double estimateReflectance(const SurfaceShading& ggx, double cosine) {
   constexpr int strata = 32;
   const Vec3 incoming(-std::sqrt(1.0 - cosine * cosine), 0.0, -cosine);
-  const SurfaceScattering surface(incoming, -Vec3::UnitZ(), ggx, Rgb::Zero());
+  const Scattering surface(incoming, -Vec3::UnitZ(), ggx, Rgb::Zero());
   double sum = 0.0;
   for (int i = 0; i < strata; ++i)
     for (int j = 0; j < strata; ++j)

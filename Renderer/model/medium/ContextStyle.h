@@ -4,8 +4,8 @@
 // Visualization"). It changes the medium, not the clip.
 
 #include "base/Color.h"
+#include "model/volume/Field.h"
 #include "model/volume/Mask.h"
-#include "model/volume/Volume.h"
 
 #include <memory>
 

@@ -9,6 +9,7 @@
 // The component of the highest number gets the rest, computed per voxel in integers, so that it is
 // exactly zero where the component is absent.
 
+#include "model/volume/Field.h"
 #include "model/volume/Mask.h"
 
 #include <array>
@@ -128,13 +129,12 @@ void LabelWeights::forEachWeight(const Vec3& index, Visit&& visit) const {
   constexpr std::array<std::size_t, 8> corners = {0,    1,        up,        up + 1,
                                                   deep, deep + 1, deep + up, deep + up + 1};
   using CornerValues = std::array<int, 8>;
-  const auto visitOne = [&](std::uint8_t component, const CornerValues& values) {
-    const auto row = [&](std::size_t i) {
-      const double a = values[i], b = values[i + 1];
-      return a + f.x() * (b - a);
-    };
-    const auto slice = [&](std::size_t i) { return row(i) + f.y() * (row(i + 2) - row(i)); };
-    if (const double weight = (slice(0) + f.z() * (slice(4) - slice(0))) / 255.0; weight > 0.0)
+  const auto visitOne = [&](std::uint8_t component, const CornerValues& v) {
+    const double weight =
+        scalar::lerp(scalar::interpolate(v[0], v[1], v[2], v[3], f.x(), f.y()),
+                     scalar::interpolate(v[4], v[5], v[6], v[7], f.x(), f.y()), f.z()) /
+        255.0;
+    if (weight > 0.0)
       visit(component, weight);
   };
   CornerValues rest;

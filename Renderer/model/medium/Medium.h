@@ -4,9 +4,10 @@
 #include "base/Random.h"
 #include "model/medium/ContextStyle.h"
 #include "model/medium/Mixture.h"
+#include "model/medium/Scattering.h"
 #include "model/medium/Tint.h"
 #include "model/medium/TransferFunction.h"
-#include "model/volume/Volume.h"
+#include "model/volume/Field.h"
 
 #include <optional>
 
@@ -118,21 +119,12 @@ private:
         sigma_t *= (*transfer.gradientOpacity)(opacitySlope(index)).value();
       if (!extraGradient.isZero(0.0))
         m.gradient += m_transfer.extinction.span() * extraGradient;
-      m.surfaceProbability =
-          computeSurfaceProbability(transfer.shading->gamma, sigma_t, m.gradient.norm());
+      const double span = m_transfer.extinction.span();
+      if (span > 0.0) // else one knot: there is no scale for gradients
+        m.surfaceProbability = scalar::surfaceProbability(
+            sigma_t, 25.0 * std::pow(transfer.shading->gamma, 3), m.gradient.norm() / span);
     }
     return m;
-  }
-
-  /// Kroes, Post, Botha 2012, with opacity and gradient over 1 mm:
-  /// P = o (1 - exp(-25 gamma^3 m)).
-  double computeSurfaceProbability(double gamma, double sigma_t, double gradientMagnitude) const {
-    const double span = m_transfer.extinction.span();
-    if (!(span > 0.0))
-      return 0.0; // one knot: there is no scale for gradients
-    const double opacity = -std::expm1(-sigma_t);
-    const double m = gradientMagnitude / span;
-    return opacity * -std::expm1(-25.0 * gamma * gamma * gamma * m);
   }
 
   Field<Voxel> m_field;

@@ -8,10 +8,6 @@ namespace {
 /// Lower limit: directions in double cannot resolve a narrower lobe, and its density overflows.
 constexpr double minRoughness = 1e-6;
 
-ScatterSample toSample(const scalar::ScatterSamples& sample) {
-  return {toVector(sample.outgoing), toColor(sample.weight), sample.pdf};
-}
-
 } // namespace
 
 // The power is the inverse of roughness^2 = 2 / (power + 2); 0.47: SurfaceShading::oddsFactor.
@@ -32,43 +28,27 @@ SurfaceShading::Lobes SurfaceShading::lobes() const {
   return {diffuse / total, specular / total, 0.04, {}}; // F0 of 0.04, no coat
 }
 
-BsdfParameters<double> makeBsdfParameters(double g, const std::optional<SurfaceShading>& shading) {
-  BsdfParameters<double> bsdf{g, 0.0, 0.0, 0.0, 1.0, 1.0, false, {}};
+scalar::Bsdf makeBsdf(double g, const std::optional<SurfaceShading>& shading) {
   if (!shading)
-    return bsdf;
+    return {g, 0.0, 0.0, 0.0, 1.0, 1.0, {}, false};
   const auto [lambert, glossy, f0, coat] = shading->lobes();
-  bsdf.diffuse = lambert;
-  bsdf.specular = glossy;
-  bsdf.f0 = f0;
-  bsdf.oddsFactor = shading->oddsFactor;
-  bsdf.roughness = std::max(minRoughness, std::sqrt(2.0 / (shading->power + 2.0)));
-  bsdf.isCoated = shading->coated.has_value();
-  bsdf.coat = {coat.constant, coat.x2, coat.x4, coat.x8};
-  return bsdf;
+  const double roughness = std::max(minRoughness, std::sqrt(2.0 / (shading->power + 2.0)));
+  return {g,
+          lambert,
+          glossy,
+          f0,
+          shading->oddsFactor,
+          roughness,
+          {coat.constant, coat.x2, coat.x4, coat.x8},
+          shading->coated.has_value()};
 }
 
-Rgb PhaseScattering::evaluate(const Vec3& outgoing) const {
-  return toColor(m_lobe.evaluate(outgoing).factor);
-}
-
-ScatterSample PhaseScattering::sample(const Vec2& u) const {
-  return toSample(m_lobe.sample(u.x(), u.y()));
-}
-
-SurfaceScattering::SurfaceScattering(const Vec3& incoming, const Vec3& gradient,
-                                     const SurfaceShading& shading, const Rgb& albedo)
-    : m_lobes(makeBsdfParameters(0.0, shading), incoming, gradient, albedo) {}
-
-double SurfaceScattering::pdf(const Vec3& outgoing) const {
-  return m_lobes.evaluate(outgoing).pdf;
-}
-
-Rgb SurfaceScattering::evaluate(const Vec3& outgoing) const {
-  return toColor(m_lobes.evaluate(outgoing).factor);
-}
-
-ScatterSample SurfaceScattering::sample(double choice, const Vec2& u) const {
-  return toSample(m_lobes.sample(choice, u.x(), u.y()));
+ScatterSample Scattering::sample(double choice, const Vec2& u) const {
+  const auto* const surface = std::get_if<scalar::SurfaceLobes>(&m_lobes);
+  const scalar::ScatterSamples s =
+      surface ? scalar::sampleLobe(*surface, choice, u.x(), u.y())
+              : scalar::sampleLobe(std::get<scalar::PhaseLobe>(m_lobes), u.x(), u.y());
+  return {toVector(s.outgoing), toColor(s.weight), s.pdf};
 }
 
 } // namespace fenestra::core

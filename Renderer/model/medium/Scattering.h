@@ -1,71 +1,51 @@
 #pragma once
-// Scattering at a real collision, by the phase function or at a surface. Conventions: `incoming` is
-// the direction in which the path travels (away from the camera), `outgoing` the direction in which
-// it continues (toward a light). evaluate() is the factor on radiance per steradian, including the
-// albedo and, at surfaces, the cosine; pdf() is per steradian.
+// Scattering at a real collision, in double. Conventions: `incoming` is the direction in which the
+// path travels (away from the camera), `outgoing` the direction in which it continues (toward a
+// light).
 
 #include "base/Random.h"
 #include "base/ScalarMath.h"
-#include "model/medium/BsdfParameters.h"
+#include "model/medium/TransferFunction.h"
 
 #include <variant>
 
 namespace fenestra::core::scalar {
-#include "model/medium/ScatteringFormulas-inl.h"
+#include "formulas/Scattering.inl"
 } // namespace fenestra::core::scalar
 
 namespace fenestra::core {
 
+/// Without shading, the surface lobes reflect nothing.
+scalar::Bsdf makeBsdf(double g, const std::optional<SurfaceShading>& shading);
+
 struct ScatterSample {
   Vec3 outgoing;
-  Rgb weight; ///< evaluate / pdf; zero ends the path
-  double pdf;
+  Rgb weight; ///< factor / pdf; zero ends the path
+  double pdf; ///< per steradian
 };
 
-/// The phase function.
-class PhaseScattering {
+class Scattering {
 public:
-  PhaseScattering(const Vec3& incoming, double g, const Rgb& albedo)
-      : m_lobe(g, incoming, albedo) {}
+  /// By the phase function.
+  Scattering(const Vec3& incoming, double g, const Rgb& albedo)
+      : m_lobes(scalar::makePhaseLobe(g, incoming, albedo)) {}
+  /// At a surface. `gradient` must not be zero. The normal is -gradient, turned to the side that
+  /// the path comes from.
+  Scattering(const Vec3& incoming, const Vec3& gradient, const SurfaceShading& shading,
+             const Rgb& albedo)
+      : m_lobes(scalar::makeSurfaceLobes(makeBsdf(0.0, shading), incoming, gradient, albedo)) {}
 
-  double pdf(const Vec3& outgoing) const { return m_lobe.evaluate(outgoing).pdf; }
-  Rgb evaluate(const Vec3& outgoing) const;
-  ScatterSample sample(const Vec2& u) const;
-
-private:
-  scalar::PhaseLobe<double> m_lobe;
-};
-
-/// Lambert and GGX lobes of a surface.
-class SurfaceScattering {
-public:
-  /// `gradient` must not be zero. The normal is -gradient, turned to the side that the path comes
-  /// from.
-  SurfaceScattering(const Vec3& incoming, const Vec3& gradient, const SurfaceShading& shading,
-                    const Rgb& albedo);
-
-  double pdf(const Vec3& outgoing) const;
-  Rgb evaluate(const Vec3& outgoing) const;
-  /// `choice`, in [0, 1), selects the lobe.
+  bool isSurface() const { return std::holds_alternative<scalar::SurfaceLobes>(m_lobes); }
+  /// Factor on radiance toward a direction, and the density of sample() there.
+  scalar::ScatterEval evaluate(const Vec3& outgoing) const {
+    return std::visit([&](const auto& lobes) { return scalar::evaluate(lobes, outgoing); },
+                      m_lobes);
+  }
+  /// `choice`, in [0, 1), selects the lobe of a surface.
   ScatterSample sample(double choice, const Vec2& u) const;
 
 private:
-  scalar::SurfaceLobes<double> m_lobes;
+  std::variant<scalar::PhaseLobe, scalar::SurfaceLobes> m_lobes;
 };
-
-using Scattering = std::variant<PhaseScattering, SurfaceScattering>;
-
-inline double scatteringPdf(const Scattering& s, const Vec3& outgoing) {
-  return std::visit([&](const auto& kind) { return kind.pdf(outgoing); }, s);
-}
-inline Rgb evaluateScattering(const Scattering& s, const Vec3& outgoing) {
-  return std::visit([&](const auto& kind) { return kind.evaluate(outgoing); }, s);
-}
-/// `u` samples the direction, `random` the lobe.
-inline ScatterSample sampleScattering(const Scattering& s, const Vec2& u, Random& random) {
-  if (const auto* surface = std::get_if<SurfaceScattering>(&s))
-    return surface->sample(random.uniform(), u);
-  return std::get<PhaseScattering>(s).sample(u);
-}
 
 } // namespace fenestra::core

@@ -7,7 +7,7 @@ cmake_minimum_required(VERSION 3.25)
 
 string(REPLACE "," ";" LAYERS "${LAYERS}")
 foreach(layer ${LAYERS})
-  file(COPY "${FROM}/${layer}" DESTINATION "${TO}" FILES_MATCHING PATTERN "*.h" PATTERN "*.cxx")
+  file(COPY "${FROM}/${layer}" DESTINATION "${TO}" FILES_MATCHING PATTERN "*.h" PATTERN "*.cxx" PATTERN "*.inl")
 endforeach()
 
 file(READ "${MUTATIONS}" mutations)
