@@ -1,7 +1,7 @@
 #pragma once
 // Light descriptions as plain data. Directions and lengths are in world space (mm, RAS) or in the
 // camera's frame; LightSet.h prepares lights for sampling. Light is a variant: to add a kind, put
-// sampling and pdf into LightFormulas-inl.h (used by both integrators) and placement into LightSet.
+// sampling and pdf into formulas/Lights.inl (used by all integrators) and placement into LightSet.
 
 #include "base/Vector.h"
 
