@@ -8,15 +8,16 @@ namespace fenestra::core {
 namespace {
 
 /// Directional albedo of the GGX lobe: mean weight of its samples on a regular grid. There is no
-/// other lobe, so the first argument of sample(), which selects one, has no effect.
+/// other lobe, so the number that selects one has no effect.
 double estimateReflectance(const SurfaceShading& ggx, double cosine) {
   constexpr int strata = 32;
   const Vec3 incoming(-std::sqrt(1.0 - cosine * cosine), 0.0, -cosine);
-  const Scattering surface(incoming, -Vec3::UnitZ(), ggx, Rgb::Zero());
+  const scalar::SurfaceLobes surface =
+      scalar::makeSurfaceLobes(makeBsdf(0.0, ggx), incoming, -Vec3::UnitZ(), Rgb::Zero());
   double sum = 0.0;
   for (int i = 0; i < strata; ++i)
     for (int j = 0; j < strata; ++j)
-      sum += surface.sample(0.5, Vec2((i + 0.5) / strata, (j + 0.5) / strata)).weight[0];
+      sum += scalar::sampleLobe(surface, 0.5, (i + 0.5) / strata, (j + 0.5) / strata).weight.x;
   return sum / (strata * strata);
 }
 
