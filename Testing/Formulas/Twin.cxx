@@ -212,7 +212,8 @@ private:
         cell[axis] = static_cast<std::int64_t>(place);
         exit = min(exit, exitDistance(axes[axis], place, 0.5F));
       }
-      const Float majorant = m_scene.majorants.cell(linearIndex(cell, m_tables.cells)).majorant;
+      const auto index = static_cast<std::int64_t>(linearIndex(cell, m_tables.cells));
+      const Float majorant = m_scene.majorants.cell(index).majorant;
       const Float stop = min(max(exit, t) + overshoot, ray.length);
       const Float depthToStop = (stop - t) * majorant;
       if (!(depth < depthToStop)) {

@@ -66,13 +66,14 @@ HWY_INLINE Float3 sobelDifference(const SimdField& field, const Float3& p) {
   };
   const SobelAxis x = locate(0, p.x), y = locate(1, p.y), z = locate(2, p.z);
   const Indices index(voxelOffset(axes, x.first, y.first, z.first));
-  const auto offset = [](const SimdAxis& axis, std::int32_t step) {
-    return std::min(step, static_cast<std::int32_t>(axis.last)) * axis.stride;
+  const auto offset = [](const SimdAxis& axis, std::size_t step) {
+    return std::min(static_cast<std::int32_t>(step), static_cast<std::int32_t>(axis.last)) *
+           axis.stride;
   };
   Float4 alongX, alongY, means; // of the four slices
-  for (std::int32_t k = 0; k < 4; ++k) {
+  for (std::size_t k = 0; k < 4; ++k) {
     Float4 rowsAlongX, rowMeans;
-    for (std::int32_t j = 0; j < 4; ++j) {
+    for (std::size_t j = 0; j < 4; ++j) {
       const Float4 row = loadRow<Voxel>(field, index, offset(axes[2], k) + offset(axes[1], j));
       rowsAlongX[j] = evalRise(x, row);
       rowMeans[j] = evalMean(x, row);
