@@ -13,8 +13,8 @@ record=$report/evidence.csv
 
 # list_sources NAME: prints the folders and files of an entry, as globs.
 list_sources() {
-  local transport='Renderer/base Renderer/model/volume Renderer/model/medium Renderer/model/camera Renderer/model/lights
-Renderer/image Renderer/clip Renderer/integrator'
+  local transport='Renderer/formulas Renderer/base Renderer/model/volume Renderer/model/medium Renderer/model/camera
+Renderer/model/lights Renderer/image Renderer/clip Renderer/integrator'
   local matrix='Testing/Oracle Testing/Statistical/Comparison.* Testing/Statistical/Matrix*.* Testing/Statistical/Significance.*'
   local benchmark='Testing/Benchmarks/References.cxx Testing/Benchmarks/Scenes.cxx'
   case $1 in
@@ -38,7 +38,8 @@ hash_tree() {
   (
     cd "$1" && shopt -s nullglob
     # shellcheck disable=SC2086
-    find $sources -type f '(' -name '*.h' -o -name '*.cxx' -o -name '*.json' -o -name '*.txt' -o -name '*.sh' ')' \
+    find $sources -type f '(' -name '*.h' -o -name '*.cxx' -o -name '*.inl' -o -name '*.json' -o -name '*.txt' \
+      -o -name '*.sh' ')' \
       ! -name CMakeLists.txt ! -name 'ErrorCode.*' -print0 | xargs -0r perl -MDigest::SHA=sha256_hex -0777 -e "$normalize"
   ) | LC_ALL=C sort | sha256sum | cut -c1-64
 }
@@ -47,7 +48,7 @@ read -r -d '' normalize <<'PERL' || true
 for my $file (@ARGV) {
   open(my $in, '<', $file) or die "$file: $!\n";
   $_ = <$in>;
-  if ($file =~ /\.(h|cxx)$/) {
+  if ($file =~ /\.(h|cxx|inl)$/) {
     s{^[ \t]*\#[ \t]*include[^\n]*|//[^\n]*|/\*.*?\*/|R"([^(\s]*)\(.*?\)\g{1}"|"(?:[^"\\\n]|\\.)*"|((?<=[0-9a-fA-F])'|'(?:[^'\\\n]|\\.)+')}
      {defined $2 ? $2 : $& =~ /"$/ && $& !~ m{^(//|/\*|\s*\#)} ? '""' : ''}gesm;
     s/\bfenestra::core\b/fenestra/g; # its name since the library has a public namespace

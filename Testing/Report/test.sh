@@ -20,7 +20,7 @@ tail -n +2 "$top/Testing/Report/evidence.csv" | while IFS=, read -r name _; do
 done
 
 cd "$work"
-mkdir -p Renderer/{base,model/{volume,medium,camera,lights},image,clip,integrator} Resources Testing/{Oracle,Report}
+mkdir -p Renderer/{formulas,base,model/{volume,medium,camera,lights},image,clip,integrator} Resources Testing/{Oracle,Report}
 cp "$top/Resources/setup.sh" Resources
 cp "$top/Testing/evidence.sh" Testing
 cp "$top"/Testing/Report/{README.md,efficiency.csv,peers.csv} Testing/Report
@@ -39,6 +39,7 @@ double step(double x) {
 CODE
 }
 write_source
+echo 'FORMULA int x;' >Renderer/formulas/Other.inl
 for folder in Renderer/{base,model/{volume,medium,camera,lights},image,clip} Testing/Oracle; do
   echo 'int x;' >$folder/Other.cxx
 done
@@ -87,6 +88,9 @@ if store_entry "trial-$commit"; then fail 'a trial is stored'; fi
 if store_entry "${commit//[0-9]/0}"; then fail 'an entry of an unknown commit is stored'; fi
 store_entry "$(git rev-parse HEAD)-dirty" || fail "changes elsewhere prevent storing: $(cat log.txt)"
 is_fresh || fail 'an entry of the current commit is stale'
+echo 'FORMULA int y;' >Renderer/formulas/Other.inl
+! is_fresh || fail 'a changed formula leaves an entry fresh'
+git checkout -q Renderer/formulas
 git mv "$source" Renderer/model/volume/Step.cxx
 is_fresh || fail 'a moved source is stale'
 echo 'int y;' >Renderer/model/medium/New.cxx
