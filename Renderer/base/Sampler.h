@@ -43,7 +43,7 @@ struct PrimarySamples {
 class Sampler {
 public:
   static constexpr bool hasIndependentHalfBuffers = true;
-  static constexpr std::uint32_t blockSize = 8; ///< samples
+  static constexpr std::uint32_t blockSize = 8; ///< samples; formulas/Random.inl has masks for it
 
   Sampler(Sampling sampling, std::uint64_t seed)
       : m_seed(Random(seed, 0, 0).bits()), m_isStratified(sampling == Sampling::stratified) {}

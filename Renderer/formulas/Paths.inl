@@ -8,10 +8,11 @@ FORMULA Float3 makeNormal(Float3 gradient, Float alongRay, Float weight) {
 }
 
 /// Probability that Russian roulette keeps a path: its throughput (root mean square of the
-/// channels), whose square measures what the path adds to the variance, over 1/2.
+/// channels), whose square measures what the path adds to the variance, over 1/2. NaN stays NaN,
+/// and such a path ends.
 FORMULA Float keepProbability(Float3 throughput) {
   const Float rms = sqrt(Real(0.3333333333333333) * dot(throughput, throughput));
-  return min(rms * 2.0F, 1.0F);
+  return min(1.0F, rms * 2.0F);
 }
 
 /// Radiance that a sampled light adds to a path, per transmittance toward it, weighted by the

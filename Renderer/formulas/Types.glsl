@@ -1,5 +1,5 @@
-// The types and functions of README.md in GLSL: one lane. Functions whose rounding Vulkan leaves to the device, or that
-// treat NaN otherwise, are replaced, so that Float arithmetic has the bits of C++ without contraction.
+// The types and functions of README.md in GLSL: one lane. Built-in functions that formulas replace, or that treat NaN in
+// another way, get other names. Division, sqrt and floor are the device's; expm1 is left to the shader.
 
 #define FORMULA
 #define CONSTANT const

@@ -1,4 +1,4 @@
-// Compiles every formula as GLSL.
+// Compiles every formula as GLSL: syntax and types. No number is computed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 

@@ -141,7 +141,7 @@ private:
   Float3 sampleLight(const Float3& point, const PhaseLobe& lobe, const Float3& throughput,
                      PathRandom& random) const {
     LaneMask left = true;
-    Float choice = random.uniform();
+    Float choice = toUniformBelow1(random.bits());
     const Float u = random.uniform();
     const LightSamples light = sampleLights(
         m_tables.lights, left, mapPoint(m_tables.toLocal, point), choice, u, random.uniform());

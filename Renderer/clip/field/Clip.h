@@ -32,8 +32,10 @@ struct ClipEdge {
 
   /// Weight at `distance` mm behind the surface; negative: in front.
   double operator()(double distance) const {
-    return scalar::edgeWeight(ghost, softness > 0.0 ? 1.0 / softness : 0.0, distance);
+    return scalar::edgeWeight(ghost, perSoftness(), distance);
   }
+  /// 1 / softness, 1 / mm; 0: sharp edge.
+  double perSoftness() const { return softness > 0.0 ? 1.0 / softness : 0.0; }
   /// True if the weight rises at `distance`.
   bool isRamp(double distance) const { return distance >= 0.0 && distance < softness; }
   /// True if the weight is 0 in front of the surface.

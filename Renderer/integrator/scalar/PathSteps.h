@@ -164,8 +164,12 @@ private:
 
   static void playRoulette(Path& path) {
     const double chance = scalar::keepProbability(path.throughput);
-    if (chance < 1.0)
-      path.throughput *= path.random.uniform() < chance ? 1.0 / chance : 0.0;
+    if (chance >= 1.0)
+      return;
+    if (path.random.uniform() < chance)
+      path.throughput /= chance;
+    else
+      path.throughput.setZero();
   }
 
   Affine m_worldToIndex;

@@ -32,7 +32,7 @@ public:
     if (mixed.any()) {
       const Remainder rest = forEachPlane(mixed, code ^ -1 /* ~code */, visit);
       components.setIf(mixed, rest.components);
-      fraction.setIf(mixed, interpolate(rest.bytes));
+      fraction.setIf(mixed, interpolateFraction(rest.bytes));
       some = fraction > 0.0F;
     }
     if (some.any())
@@ -85,7 +85,7 @@ private:
       for (std::size_t i = 0; i < bytes.size(); ++i)
         rest.bytes[i] = rest.bytes[i] - zeroUnless(left, bytes[i]); // no borrow: sums are <= 255
       rest.components.setIf(left, shiftRight<2 * byte>(numbers) & 0xff);
-      const Float fraction = zeroUnless(left, interpolate(bytes));
+      const Float fraction = zeroUnless(left, interpolateFraction(bytes));
       if (const LaneMask some = fraction > 0.0F; some.any())
         visit(some, shiftRight<byte>(numbers) & 0xff, fraction);
       left = left & (numbers < 1 << 3 * byte); // isLast is 0
@@ -101,14 +101,14 @@ private:
   }
 
   /// Fraction, trilinear between the eight voxels around the point.
-  HWY_INLINE Float interpolate(const Bytes& bytes) const {
+  HWY_INLINE Float interpolateFraction(const Bytes& bytes) const {
     static_assert(edge == 5); // the next row starts one byte after the first four
     const Float3& f = m_corner.fractions;
     const auto slice = [&](std::size_t i) {
       const Int row = bytes[i], next = bytes[i + 1];
-      return core::HWY_NAMESPACE::interpolate(
-          toFloat(row & 0xff), toFloat(shiftRight<8>(row) & 0xff),
-          toFloat(shiftRight<8>(next) & 0xff), toFloat(shiftRight<16>(next) & 0xff), f.x, f.y);
+      return interpolate(toFloat(row & 0xff), toFloat(shiftRight<8>(row) & 0xff),
+                         toFloat(shiftRight<8>(next) & 0xff), toFloat(shiftRight<16>(next) & 0xff),
+                         f.x, f.y);
     };
     return lerp(slice(0), slice(2), f.z) * (1.0F / 255.0F);
   }

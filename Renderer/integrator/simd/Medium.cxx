@@ -66,7 +66,7 @@ void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
   const ClipEdge& edge = plane ? plane->edge : depth->edge;
   medium.clip.ghost = narrow(edge.ghost);
   medium.clip.softness = narrow(edge.softness);
-  medium.clip.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
+  medium.clip.perSoftness = narrow(edge.perSoftness());
   medium.cutSlope = edge.softness > 0.0 ? narrow(cutSlope) : 0.0F;
   const Camera& camera = plane ? plane->camera : depth->camera;
   const Vec3& from = camera.pose().position;

@@ -3,7 +3,6 @@
 // path travels (away from the camera), `outgoing` the direction in which it continues (toward a
 // light).
 
-#include "base/Random.h"
 #include "base/ScalarMath.h"
 #include "model/medium/TransferFunction.h"
 
