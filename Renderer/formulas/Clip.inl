@@ -16,7 +16,7 @@ FORMULA ViewPoints mapToView(STRUCT(ClipTable) clip, Float3 p) {
   at.depth = applyRow(clip.toView[2], p);
   at.scale = 1.0F;
   at.isBehindCamera = noLanes();
-  if (clip.perspective) {
+  if (clip.isPerspective != 0) {
     const Float fromCamera = at.depth + clip.targetDepth;
     at.isBehindCamera = fromCamera <= 0.0F;
     at.scale = clip.targetDepth / fromCamera;
@@ -52,9 +52,9 @@ FORMULA Float edgeWeight(Real ghost, Real perSoftness, Float behind) {
 }
 
 /// Gradient of the distance behind a surface of the given slopes, along the view's axes.
-FORMULA Float3 distanceGradient(bool perspective, Real targetDepth, STRUCT(ViewPoints) view,
+FORMULA Float3 distanceGradient(bool isPerspective, Real targetDepth, STRUCT(ViewPoints) view,
                                 Float slopeX, Float slopeY) {
-  if (!perspective)
+  if (!isPerspective)
     return Float3(-slopeX, -slopeY, 1.0F);
   const Float perDepth = view.scale / targetDepth;
   const Float along = fma(slopeX, view.x, slopeY * view.y);

@@ -6,12 +6,13 @@ struct DepthTable {
   Real perPitch, start, lastInside, before, perFactor, last;
 };
 
+/// GLSL aligns the map to 16 bytes: it comes first.
 struct ClipTable {
-  Real ghost;       ///< ClipEdge
-  Real softness;    ///< mm
-  Real perSoftness; ///< 1 / mm; 0: sharp edge
-  bool perspective;
-  Real targetDepth;
   AffineRows toView; ///< rows of the map from index space to view space
+  Real ghost;        ///< ClipEdge
+  Real softness;     ///< mm
+  Real perSoftness;  ///< 1 / mm; 0: sharp edge
+  Real targetDepth;
+  int isPerspective; ///< 1: perspective, 0: orthographic
   DepthTable depthX, depthY;
 };

@@ -1,5 +1,5 @@
 // The types and functions of README.md in GLSL: one lane. Built-in functions that formulas replace, or that treat NaN in
-// another way, get other names. Division, sqrt and floor are the device's; expm1 is left to the shader.
+// another way, get other names. Division, sqrt and floor are the device's.
 
 #define FORMULA
 #define CONSTANT const

@@ -286,6 +286,9 @@ RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene
                         std::optional<Checkpoint>& checkpoint, RenderMonitor& monitor,
                         const ShareRender& share, RenderStats& stats) {
   RenderSettings settings = makeSettings(options, scene.background());
+  if (options.device == DeviceChoice::gpu)
+    if (const auto obstacle = findGpuObstacle(scene.view(), settings))
+      warn({"the CPU renders: " + *obstacle});
   std::optional<RenderResult> begun;
   if (checkpoint) {
     begun = checkpoint->load(scene, settings);

@@ -298,6 +298,14 @@ struct RenderOptionTable {
        ValueSpec::choice(settings.sampling, {{"stratified", Sampling::stratified},
                                              {"independent", Sampling::independent}})
            .withAliases({{"strata", "stratified"}})},
+      {"device", "KIND", qualityGroup,
+       "Renders on the cpu, on the gpu, or auto: on the GPU if a device and the scene allow it; "
+       "list: lists the GPUs of this machine",
+       ValueSpec::choice(options.device, {{"cpu", DeviceChoice::cpu},
+                                          {"gpu", DeviceChoice::gpu},
+                                          {"auto", DeviceChoice::automatic},
+                                          {"list", DeviceChoice::list}}),
+       OverrideGroup::process},
       {OptionNames("threads", 'j'), "K", qualityGroup,
        "Number of threads, at most one per core; 0: all cores",
        ValueSpec::integer(0, 1024).bind(settings.threads), OverrideGroup::process},

@@ -260,6 +260,8 @@ RenderSettings makeSettings(const RenderOptions& options, const std::optional<Ba
   RenderSettings settings = options.settings;
   settings.path.background = options.background.value_or(scene.value_or(Background::makeDark()));
   settings.isDisplayNoise = options.noiseTarget == NoiseTarget::denoised;
+  if (options.device != DeviceChoice::cpu)
+    settings.integrator = Integrator::gpu;
   return settings;
 }
 

@@ -15,6 +15,10 @@ enum class Denoise { automatic, on, off };
 /// outputs are display images.
 enum class NoiseTarget { automatic, raw, denoised };
 
+/// What renders: automatic, the GPU if a device and the scene allow it, else the CPU; gpu, the same
+/// with a warning; list, lists the GPUs instead of rendering.
+enum class DeviceChoice { cpu, gpu, automatic, list };
+
 enum class ProgressMode { automatic, bar, xml, none };
 
 struct RenderOptions {
@@ -29,6 +33,7 @@ struct RenderOptions {
   SmoothingRequest smoothing = {
       SmoothingRequest::Kind::automatic}; ///< as given; scene.smoothing is resolved
   Denoise denoise = Denoise::automatic;
+  DeviceChoice device = DeviceChoice::cpu;
   NoiseTarget noiseTarget = NoiseTarget::automatic;  ///< raw or filtered after makeRenderOptions
   std::optional<std::filesystem::path> surface = {}; ///< only with a depth clip
   std::optional<std::filesystem::path> stats = {};

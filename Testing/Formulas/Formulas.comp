@@ -8,11 +8,11 @@ layout(std430, binding = 0) buffer Numbers {
 };
 
 #include "formulas/Types.glsl"
-#define expm1(x) (exp(x) - 1.0)
 
 #include "formulas/Vectors.inl"
 #include "formulas/Random.inl"
 #include "formulas/Uniforms.inl"
+#include "formulas/Exponential.inl"
 #include "formulas/Interpolation.inl"
 #include "formulas/ClipTable.inl"
 #include "formulas/Clip.inl"

@@ -2,6 +2,7 @@
 
 #include "base/InstructionSets.h"
 #include "base/Stopwatch.h"
+#include "integrator/gpu/PathIntegrator.h"
 #include "integrator/render/EmptyPixels.h"
 #include "integrator/render/SamplePlan.h"
 #include "integrator/render/TileStream.h"
@@ -75,22 +76,45 @@ std::uint64_t chooseNoisePassSize(const LastPass& last, const RenderSettings& se
   return std::min(choosePassSize(done - minNoiseSamples, settings), most);
 }
 
-/// Lets all threads render the rest of a pass, until its end, a pause or a stop. Tiles are
-/// added complete or not at all.
+/// Streams of a pass that are traced at the same time, and how many paths each traces together.
+struct Streams {
+  int count;
+  std::size_t maxPaths;
+};
+/// One per thread. Limits the paths, so that all threads get some and end at about the same time.
+template <typename Tracer>
+Streams planStreams(const Tracer&, const Film& film) {
+  const int threads = tbb::this_task_arena::max_concurrency();
+  return {threads,
+          std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)))};
+}
+Streams planStreams(const gpu::PathIntegrator& tracer, const Film&) {
+  return {static_cast<int>(tracer.laneCount()), std::numeric_limits<std::size_t>::max()};
+}
+
+template <typename Tracer>
+void traceStream(const Tracer& tracer, int, TileStream& stream, std::size_t maxPaths,
+                 Counters& counters) {
+  tracer.trace(stream, maxPaths, counters);
+}
+void traceStream(const gpu::PathIntegrator& tracer, int lane, TileStream& stream,
+                 std::size_t maxPaths, Counters& counters) {
+  tracer.trace(static_cast<std::size_t>(lane), stream, maxPaths, counters);
+}
+
+/// Renders the rest of a pass, until its end, a pause or a stop. Tiles are added complete or not at
+/// all.
 template <typename Tracer>
 void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& total,
                  RenderMonitor& monitor) {
-  const int threads = tbb::this_task_arena::max_concurrency();
-  // Limits the paths per thread, so that all threads get some and they end at about the same time.
-  const std::size_t maxPaths =
-      std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)));
+  const Streams streams = planStreams(tracer, film);
   tbb::combinable<Counters> counters;
   tbb::parallel_for(
-      0, threads,
-      [&](int) {
+      0, streams.count,
+      [&](int i) {
         TileStream stream(pass, monitor.pauseAt);
         if (!monitor.stop.load(std::memory_order_relaxed))
-          tracer.trace(stream, maxPaths, counters.local());
+          traceStream(tracer, i, stream, streams.maxPaths, counters.local());
       },
       tbb::simple_partitioner());
   counters.combine_each([&](const Counters& local) { total += local; });
@@ -309,19 +333,46 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& target, const
   return result;
 }
 
+/// A scene as the SIMD integrator and the GPU read it.
+struct SimdScene {
+  SimdScene(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop)
+      : domain(scene.volume.grid, scene.crop),
+        tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip, scene.style,
+                stop, scene.mixture),
+        shading(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
+                settings.path.wantNormals, scene.tint, scene.mixture),
+        table(domain, scene.camera),
+        cameraRays(scene.camera, cameraRayClip(scene.clip, scene.mixture), scene.lights,
+                   settings.path.background) {}
+
+  Domain domain;
+  SimdTracker tracker;
+  SimdShading shading;
+  CameraTable table;
+  CameraRays cameraRays;
+};
+
 /// Calls work(tracer, target) with the SIMD integrator.
 template <typename Work>
 auto traceSimd(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
                Work&& work) {
-  const Domain domain(scene.volume.grid, scene.crop);
-  const SimdTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
-                            scene.style, stop, scene.mixture);
-  const SimdShading shading(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
-                            settings.path.wantNormals, scene.tint, scene.mixture);
-  const CameraTable table(domain, scene.camera);
-  const CameraRays cameraRays(scene.camera, cameraRayClip(scene.clip, scene.mixture), scene.lights,
-                              settings.path.background);
-  return work(SimdPathIntegrator(tracker, shading, table, cameraRays, stop), instructionSet());
+  const SimdScene simd(scene, settings, stop);
+  return work(SimdPathIntegrator(simd.tracker, simd.shading, simd.table, simd.cameraRays, stop),
+              instructionSet());
+}
+
+/// Calls work(tracer, target) with the GPU.
+template <typename Work>
+auto traceGpu(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
+              Work&& work) {
+  const std::shared_ptr<const gpu::Device> device = gpu::Device::open();
+  const SimdScene simd(scene, settings, stop);
+  const gpu::SceneTables tables(simd.tracker.medium(), simd.shading, simd.table, simd.cameraRays,
+                                settings.sampling == Sampling::stratified);
+  return work(gpu::PathIntegrator(device, simd.tracker.medium(), tables, simd.table,
+                                  simd.cameraRays, stop,
+                                  settings.laneLimits.value_or(gpu::chooseLimits(*device))),
+              device->info().target());
 }
 
 /// Calls work(tracer, target) with the scalar integrator.
@@ -339,16 +390,22 @@ auto traceScalar(const SceneView& scene, const RenderSettings& settings, const S
 }
 
 bool isSimdUsed(const SceneView& scene, const RenderSettings& settings) {
-  return settings.integrator == Integrator::simd && canUseSimd(scene);
+  return settings.integrator != Integrator::scalar && canUseSimd(scene);
 }
 
-/// Calls work(tracer, target) in an arena of as many threads as the settings allow.
+/// Calls work() in an arena of as many threads as the settings allow.
+template <typename Work>
+auto inArena(const RenderSettings& settings, Work&& work) {
+  const int cores = tbb::info::default_concurrency(); // TBB warns about more
+  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
+  return arena.execute(work);
+}
+
+/// Calls work(tracer, target) with an integrator of the CPU.
 template <typename Work>
 auto traceScene(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
                 Work&& work) {
-  const int cores = tbb::info::default_concurrency(); // TBB warns about more
-  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
-  return arena.execute([&] {
+  return inArena(settings, [&] {
     return isSimdUsed(scene, settings) ? traceSimd(scene, settings, stop, work)
                                        : traceScalar(scene, settings, stop, work);
   });
@@ -362,16 +419,46 @@ bool canUseSimd(const SceneView& scene) {
          (!scene.tint || SimdLabelWeights::isSupported(*scene.tint->weights));
 }
 
+std::optional<std::string> findGpuObstacle(const SceneView& scene, const RenderSettings& settings) {
+  if (!canUseSimd(scene))
+    return "the scene needs double precision";
+  try {
+    gpu::Device::open();
+  } catch (const gpu::DeviceError& error) {
+    return error.what();
+  }
+  const SimdScene simd(scene, settings, neverStopped);
+  const std::optional<std::string> missing =
+      gpu::SceneTables::findUnsupported(simd.tracker.medium());
+  return missing ? std::optional("the shader lacks " + *missing) : std::nullopt;
+}
+
 std::string findTarget(const SceneView& scene, const RenderSettings& settings) {
+  if (settings.integrator == Integrator::gpu && !findGpuObstacle(scene, settings))
+    return gpu::Device::open()->info().target();
   return isSimdUsed(scene, settings) ? instructionSet() : "scalar";
 }
 
 RenderResult render(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
                     std::optional<RenderResult> resumed) {
-  return traceScene(
-      scene, settings, monitor.stop, [&](const auto& tracer, const std::string& target) {
+  std::string failure;
+  if (settings.integrator == Integrator::gpu && !findGpuObstacle(scene, settings))
+    try {
+      return inArena(settings, [&] {
+        return traceGpu(scene, settings, monitor.stop,
+                        [&](const auto& tracer, const std::string& target) {
+                          return renderPasses(tracer, target, scene, settings, monitor, resumed);
+                        });
+      });
+    } catch (const gpu::DeviceError& error) {
+      failure = error.what();
+    }
+  RenderResult result =
+      traceScene(scene, settings, monitor.stop, [&](const auto& tracer, const std::string& target) {
         return renderPasses(tracer, target, scene, settings, monitor, std::move(resumed));
       });
+  result.gpuFailure = failure;
+  return result;
 }
 
 } // namespace fenestra::core

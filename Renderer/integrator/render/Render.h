@@ -6,6 +6,7 @@
 
 #include "image/Film.h"
 #include "image/Tiles.h"
+#include "integrator/gpu/LaneLimits.h"
 #include "integrator/render/SamplePlan.h"
 #include "integrator/scalar/Counters.h"
 #include "integrator/scalar/MajorantGrid.h"
@@ -50,8 +51,9 @@ auto withMedium(const SceneView& scene, Work&& work, const StopFlag& stop = neve
       scene.volume.voxels);
 }
 
-/// Both are unbiased. `simd` falls back to `scalar` for scenes that it does not support.
-enum class Integrator { simd, scalar };
+/// All are unbiased. `gpu` falls back to `simd`, and `simd` to `scalar`, for scenes that they do
+/// not support; `gpu` also without a device.
+enum class Integrator { simd, scalar, gpu };
 
 /// A render stops at the first of the limits. With a noise target for the raw image, noisier pixels
 /// get more samples, after a pilot of 16 per pixel (SamplePlan). Otherwise all get the same number.
@@ -71,6 +73,7 @@ struct RenderSettings {
   std::uint64_t passSamples = 0; ///< per pass; 0: growing passes
   std::uint64_t passGrowth = 3;  ///< samples of a growing pass per sample before it
   double passSeconds = infinity; ///< limit of a pass's time, at the speed of the last one
+  std::optional<gpu::LaneLimits> laneLimits = {}; ///< of the GPU; none: as the device suggests
   /// Tiles to render. The others stay as they are, so `noise` needs an onPassEnd that adds them.
   Shard shard = {};
 
@@ -126,12 +129,17 @@ struct RenderResult {
   std::uint64_t finishedSamples = 0;
   std::uint64_t begunSamples = 0; ///< at the end of the pass started last
   LastPass last = {};
-  /// Instruction set, or "scalar": images of the same target are bit-identical.
+  /// Instruction set, "scalar", or GPU and driver: images of the same target are bit-identical.
   std::string target = "scalar";
+  /// Why the GPU was given up during the render, which the CPU then repeated; else empty.
+  std::string gpuFailure = {};
 };
 
 /// True if SIMD supports the scene (SimdTracker::isSupported, SimdShading::isSupported).
 bool canUseSimd(const SceneView& scene);
+
+/// Why the GPU cannot render a scene: the device, or what its shader lacks. None: it can.
+std::optional<std::string> findGpuObstacle(const SceneView& scene, const RenderSettings& settings);
 
 /// RenderResult::target that a render will have.
 std::string findTarget(const SceneView& scene, const RenderSettings& settings);

@@ -38,12 +38,15 @@ struct SimdLabelWeights {
       : toWeights(affineRows(weights.grid().worldToIndex * volume.indexToWorld)),
         axes(makeSimdAxes(weights.grid().size, weights.brickCount())),
         bricks(weights.bricks().data()),
-        planes(weights.planes().data()) {}
+        planes(weights.planes().data()),
+        brickCount(weights.bricks().size()),
+        planeCount(weights.planes().size()) {}
 
   AffineRows toWeights; ///< from the volume's index space
   SimdAxes axes;
   const std::int32_t* bricks; ///< LabelWeights::bricks()
   const LabelWeights::Plane* planes;
+  std::size_t brickCount, planeCount;
 };
 
 } // namespace fenestra::core

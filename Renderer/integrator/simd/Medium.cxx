@@ -70,7 +70,7 @@ void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
   medium.cutSlope = edge.softness > 0.0 ? narrow(cutSlope) : 0.0F;
   const Camera& camera = plane ? plane->camera : depth->camera;
   const Vec3& from = camera.pose().position;
-  medium.clip.perspective = camera.pose().projection == Projection::perspective;
+  medium.clip.isPerspective = camera.pose().projection == Projection::perspective ? 1 : 0;
   medium.clip.targetDepth = narrow(camera.targetDepth());
   medium.clip.toView = {makeRow(grid, camera.right(), from, 0.0),
                         makeRow(grid, camera.up(), from, 0.0),
@@ -88,6 +88,7 @@ void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
   medium.clip.depthX = toTable(depth->buffer->xAxis());
   medium.clip.depthY = toTable(depth->buffer->yAxis());
   medium.depths = depth->buffer->depthsFromReference().data();
+  medium.depthCount = depth->buffer->depthsFromReference().size();
   medium.depthColumns = static_cast<std::int32_t>(depth->buffer->columns());
   medium.silhouette = depth->silhouette.get();
 }

@@ -75,6 +75,7 @@ struct SimdMedium {
   AffineRows fromView = {};            ///< directions: view space to world
   std::array<float, 4> toPlane = {};   ///< distance from the plane, mm; > 0: removed
   const float* depths = nullptr;       ///< mm, relative to the target
+  std::size_t depthCount = 0;
   std::int32_t depthColumns = 0;
   const SilhouetteCells* silhouette = nullptr; ///< for an exact boundary; else null
 };

@@ -1,0 +1,62 @@
+#include "integrator/gpu/PathIntegrator.h"
+
+#include <cmath>
+
+namespace fenestra::core::gpu {
+namespace {
+
+/// Two lanes suffice to overlap the work of host and device; more help devices with several queues.
+std::size_t chooseLaneCount(const Device& device) {
+  return std::max<std::size_t>(2, device.queueCount());
+}
+
+} // namespace
+
+LaneLimits chooseLimits(const Device& device) {
+  if (device.isSoftware())
+    return {.threads = 1024, .paths = std::size_t{1} << 13};
+  return {.threads = 1U << 16, .paths = std::size_t{1} << 18};
+}
+
+PathIntegrator::PathIntegrator(std::shared_ptr<const Device> device, const SimdMedium& medium,
+                               const SceneTables& scene, const CameraTable& camera,
+                               const CameraRays& cameraRays, const StopFlag& stop,
+                               const LaneLimits& limits)
+    : m_pipeline(std::move(device), medium, scene),
+      m_nearDepth(camera.nearDepth),
+      m_cameraRays(cameraRays),
+      m_stop(stop) {
+  const Device& on = m_pipeline.device();
+  for (std::size_t i = 0; i < chooseLaneCount(on); ++i)
+    m_lanes.push_back(std::make_unique<Lane>(m_pipeline, i % on.queueCount(), limits));
+}
+
+/// Appends paths after those of `destinations`.
+void PathIntegrator::append(const CameraSamples& samples, PathStart* starts,
+                            std::vector<Destination>& destinations) {
+  PathStart* next = starts + destinations.size();
+  for (std::size_t i = 0; i < samples.size; ++i) {
+    *next++ = {static_cast<Int>(samples.column[i]), static_cast<Int>(samples.row[i]),
+               samples.start[i], samples.key[i], samples.number[i]};
+    destinations.push_back({samples.tile[i], samples.tileSample[i], samples.row[i]});
+  }
+}
+
+PathSample PathIntegrator::makeSample(const PathResult& result, float row) const {
+  const auto triple = [](const float(&v)[3]) {
+    return Rgb(double{v[0]}, double{v[1]}, double{v[2]});
+  };
+  if (result.scatterings == 0.0F) // escaped, or collided with scatterings limited to 0
+    return std::isinf(result.depth)
+               ? m_cameraRays.sampleBackground(double{row}, triple(result.normal).matrix())
+               : PathSample{};
+  PathSample sample;
+  sample.radiance = triple(result.radiance);
+  sample.albedo = triple(result.albedo);
+  sample.normal = triple(result.normal).matrix();
+  sample.depth = m_nearDepth + double{result.depth};
+  sample.scatterings = double{result.scatterings};
+  return sample;
+}
+
+} // namespace fenestra::core::gpu

@@ -1,0 +1,3 @@
+// The implementation of volk, which opens the Vulkan loader.
+#define VOLK_IMPLEMENTATION
+#include <volk.h>

@@ -1,0 +1,66 @@
+// Numbers of a scene, in one layout for C++ and GLSL (std430): maps first, which GLSL aligns to 16
+// bytes. Offsets count words of 32 bits in the scene's tables (gpu/SceneTables.h). Lengths in mm.
+
+/// One axis of the voxel grid, for interpolation.
+struct VoxelAxis {
+  Real last, lastCell; ///< as locateOnAxis's
+  Int step;            ///< to the next voxel: 1; 0 along an axis of one voxel
+};
+
+/// Majorant cells along one axis (SimdMedium::Axis).
+struct CellAxis {
+  Real cellEdge, cellsPerVoxel, insideCells, cellStride;
+};
+
+struct SceneNumbers {
+  AffineRows toLocal;      ///< points, index to local space (SimdShading)
+  AffineRows localToIndex; ///< directions
+  AffineRows toCrop;       ///< points, index to crop space
+  AffineRows toGradient;   ///< differences across two voxels (SimdShading)
+  AffineRows fromView;     ///< directions, view space to world
+  AffineRows toWeights;    ///< points, index to the label weights' index space
+  AffineRows toFocus;      ///< points, index to the focus mask's index space
+  AffineRow toPlane;       ///< distance from a clip plane; > 0: removed
+  AffineRow cutNormal;     ///< of a plane; else the view axis
+  AffineRow lower, upper;  ///< the domain's box, index space
+
+  /// CameraTable: on the near plane, and directions.
+  AffineRow point, pointPerColumn, pointPerRow;
+  AffineRow forward, forwardPerColumn, forwardPerRow;
+  Real middleColumn, middleRow; ///< raster position of the image's center
+
+  VoxelAxis voxelsX, voxelsY, voxelsZ;
+  CellAxis cellsX, cellsY, cellsZ;
+  Int cells; ///< offset of SimdMajorants::codes
+  Real firstCell, endCell; ///< index of the first inner and of the last cell
+  Real overshoot;
+
+  /// Extinction functions (SimdLines): offset, words per function, bins; then their segments.
+  Int lines, lineWords;
+  Real lineStart, linesPerUnit, lastLine;
+  Int extinctions, albedos; ///< offsets of the first table of segments
+
+  Real constantRed, constantGreen, constantBlue; ///< radiance of all constant environments
+  Int areas, directionals, spheres, skies;       ///< offsets of the first light
+  Int maps;                                      ///< offset of the first environment map
+
+  /// Label weights: last voxels, and offsets of the next brick; then offsets of their tables.
+  VoxelAxis weightsX, weightsY, weightsZ;
+  Int bricks, mergedBricks, planes;
+  Int unclipped; ///< offset of 1 per component that is unclipped
+
+  /// ContextStyle and its focus mask.
+  VoxelAxis focusX, focusY, focusZ;
+  Real focusLevel, contextExtinction, contextSaturation;
+
+  Int bsdfs;        ///< offset of the first Bsdf's numbers
+  Real surfaceRate; ///< SimdShading
+  Int nets;         ///< offset of Sampler::nets
+  Int bounces;      ///< maximum number of scatterings
+
+  Int depths, depthColumns; ///< offset and columns of the depth buffer
+  Real cutSlope;            ///< length of a soft cut's gradient, mm^-1
+
+  Int unused[2]; ///< so that the clip begins at 16 bytes
+  ClipTable clip;
+};
