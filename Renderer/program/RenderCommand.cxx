@@ -287,7 +287,7 @@ RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene
                         const ShareRender& share, RenderStats& stats) {
   RenderSettings settings = makeSettings(options, scene.background());
   if (options.device == DeviceChoice::gpu)
-    if (const auto obstacle = findGpuObstacle(scene.view(), settings))
+    if (const auto obstacle = findGpuObstacle(scene.view()))
       warn({"the CPU renders: " + *obstacle});
   std::optional<RenderResult> begun;
   if (checkpoint) {

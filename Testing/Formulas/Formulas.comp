@@ -14,6 +14,7 @@ layout(std430, binding = 0) buffer Numbers {
 #include "formulas/Uniforms.inl"
 #include "formulas/Exponential.inl"
 #include "formulas/Interpolation.inl"
+#include "formulas/CellCubic.inl"
 #include "formulas/ClipTable.inl"
 #include "formulas/Clip.inl"
 #include "formulas/Scattering.inl"

@@ -151,15 +151,24 @@ TEST(FocusCells, MaximumOfAMissingRayEqualsDenseSampling) {
   EXPECT_LT(mismatches, 3);
 }
 
+scalar::Cubic makeCubic(const std::array<double, 4>& c) {
+  return {c[0], c[1], c[2], c[3]};
+}
+double findFirstNonNegative(const std::array<double, 4>& c) {
+  return scalar::findFirstNonNegative(makeCubic(c), scalar::rootRounding);
+}
+
 TEST(CellCubic, SlopeEqualsFiniteDifference) {
   Random random(1, 0, 0);
   for (int trial = 0; trial < 10000; ++trial) {
-    Cubic cubic;
-    for (double& c : cubic.c)
-      c = uniform(random, -1, 1);
+    std::array<double, 4> c;
+    for (double& coefficient : c)
+      coefficient = uniform(random, -1, 1);
+    const scalar::Cubic cubic = makeCubic(c);
     const double s = random.uniform();
     const double step = 1e-5;
-    EXPECT_NEAR(cubic.slope(s), (cubic(s + step) - cubic(s - step)) / (2 * step), 1e-8);
+    EXPECT_NEAR(evalSlope(cubic, s),
+                (evalCubic(cubic, s + step) - evalCubic(cubic, s - step)) / (2 * step), 1e-8);
   }
 }
 
@@ -167,34 +176,35 @@ TEST(CellCubic, FirstRootEqualsBruteForce) {
   Random random(2, 0, 0);
   int roots = 0;
   for (int trial = 0; trial < 20000; ++trial) {
-    Cubic cubic{{uniform(random, -1, 0.05), uniform(random, -4, 4), uniform(random, -8, 8),
-                 uniform(random, -8, 8)}};
+    std::array<double, 4> c = {uniform(random, -1, 0.05), uniform(random, -4, 4),
+                               uniform(random, -8, 8), uniform(random, -8, 8)};
     // Every fifth is a quadratic; of these, every second is nearly linear.
-    cubic.c[trial % 5 == 0 ? 3 : 0] *= trial % 5 == 0 ? 0.0 : 1.0;
-    cubic.c[trial % 10 == 0 ? 2 : 0] *= trial % 10 == 0 ? 1e-18 : 1.0;
-    const double root = findFirstNonNegative(cubic);
+    c[trial % 5 == 0 ? 3 : 0] *= trial % 5 == 0 ? 0.0 : 1.0;
+    c[trial % 10 == 0 ? 2 : 0] *= trial % 10 == 0 ? 1e-18 : 1.0;
+    const scalar::Cubic cubic = makeCubic(c);
+    const double root = findFirstNonNegative(c);
     const int samples = 400;
     for (int i = 0; i <= samples; ++i) {
       const double s = static_cast<double>(i) / samples;
       if (s < root - 1e-9) {
-        ASSERT_LT(cubic(s), 1e-12) << "there is a root before " << root;
+        ASSERT_LT(evalCubic(cubic, s), 1e-12) << "there is a root before " << root;
       }
     }
     if (root > 0.0 && root < infinity) {
       ++roots;
       ASSERT_LE(root, 1.0);
-      ASSERT_NEAR(cubic(root), 0.0, 1e-13);
+      ASSERT_NEAR(evalCubic(cubic, root), 0.0, 1e-13);
     }
   }
   EXPECT_GT(roots, 5000);
 }
 
 TEST(CellCubic, DoubleConstantAndLinearRootsAreFound) {
-  EXPECT_EQ(findFirstNonNegative({{-1, 0, 0, 0}}), infinity);
-  EXPECT_EQ(findFirstNonNegative({{0, -1, 0, 0}}), 0.0);
-  EXPECT_NEAR(findFirstNonNegative({{-0.25, 1, 0, 0}}), 0.25, 1e-15);
-  EXPECT_NEAR(findFirstNonNegative({{-0.25, 1, -1, 0}}), 0.5, 1e-7); // a double root
-  EXPECT_NEAR(findFirstNonNegative({{-1, 0, 0, 1}}), 1.0, 1e-15);
+  EXPECT_EQ(findFirstNonNegative({-1, 0, 0, 0}), infinity);
+  EXPECT_EQ(findFirstNonNegative({0, -1, 0, 0}), 0.0);
+  EXPECT_NEAR(findFirstNonNegative({-0.25, 1, 0, 0}), 0.25, 1e-15);
+  EXPECT_NEAR(findFirstNonNegative({-0.25, 1, -1, 0}), 0.5, 1e-7); // a double root
+  EXPECT_NEAR(findFirstNonNegative({-1, 0, 0, 1}), 1.0, 1e-15);
 }
 
 TEST(FocusDepth, BoxFacesAreAtTheVoxelFaces) {

@@ -44,6 +44,9 @@ public:
   /// Closes the slots of `focus`: their samples become context.
   SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, FocusDepth& focus);
 
+  const FocusTracer& tracer() const { return *m_tracer; }
+  double offset() const { return m_offset; } ///< sum of all moves, mm
+
   /// Sample beside the focus whose ray has a maximum.
   struct HaloSample {
     std::int64_t sample;

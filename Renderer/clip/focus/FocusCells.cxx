@@ -188,8 +188,12 @@ double FocusCells::indicator(const Vec3& point) const {
 }
 
 FocusCells::Layout FocusCells::layout() const {
-  return {m_blockCorners.data(), m_corners.front().data(), m_blocks,
-          m_values.empty() ? nullptr : m_values.front().data(), m_valueScale};
+  return {m_blockCorners.data(),
+          m_corners.front().data(),
+          m_blocks,
+          m_values.empty() ? nullptr : m_values.front().data(),
+          m_valueScale,
+          m_corners.size() - 1}; // without the padding
 }
 
 /// Returns the mixed blocks of a layer, which m_blockCorners numbers -1, -2, … within the layer.

@@ -76,7 +76,9 @@ public:
     Size3 blockCount;
     const std::uint8_t* values; ///< BlockValues, 128 bytes each; null: voxels are 0 and 1 only
     double valueScale;          ///< indicator per unit of a value
+    std::size_t count;          ///< of BlockCorners and BlockValues
   };
+  Layout layout() const;
 
   /// Calls visit(block) for each non-empty block. Block i fills [i, i + 1] * blockSize of cell
   /// space in each axis.
@@ -116,7 +118,6 @@ private:
     BlockValues values; ///< for smoothed masks only
   };
   std::vector<Block> buildLayer(const Mask& mask, std::int64_t z);
-  Layout layout() const;
   std::int64_t blockIndex(const Size3& block) const {
     return block.x() + m_blocks.x() * (block.y() + m_blocks.y() * block.z());
   }

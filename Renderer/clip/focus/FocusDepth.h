@@ -78,6 +78,9 @@ public:
 
   const Camera& camera() const { return m_camera; }
   const FocusCells& cells() const { return *m_cells; }
+  const Domain& domain() const { return m_volume; }
+  /// True if the domain contains the complete grid of the focus.
+  bool isFocusInside() const { return m_isInside; }
 
 private:
   Interval clipToDomain(const Vec2& position) const;
@@ -88,7 +91,7 @@ private:
   Domain m_volume;
   std::unique_ptr<const FocusCells> m_cells;
   std::unique_ptr<const CellRays> m_rays;
-  bool m_isInside; ///< the domain contains the complete grid of the focus
+  bool m_isInside; ///< isFocusInside
 };
 
 } // namespace fenestra::core

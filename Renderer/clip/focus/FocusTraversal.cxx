@@ -29,9 +29,11 @@ HWY_INLINE unsigned maskBits(M mask) {
 /// Collects cubics over ray segments that rise from < 0 to >= 0, and solves them in SIMD batches.
 class RootSolver {
 public:
-  void add(const Cubic& cubic, double begin, double length, std::size_t ray) {
-    for (std::size_t i = 0; i < 4; ++i)
-      m_c[i][m_size] = cubic.c[i];
+  void add(const scalar::Cubic& cubic, double begin, double length, std::size_t ray) {
+    m_c[0][m_size] = cubic.c0;
+    m_c[1][m_size] = cubic.c1;
+    m_c[2][m_size] = cubic.c2;
+    m_c[3][m_size] = cubic.c3;
     m_begin[m_size] = begin;
     m_length[m_size] = length;
     m_ray[m_size] = ray;
@@ -275,10 +277,10 @@ private:
     const unsigned rising = maskBits(rises);
     for (unsigned left = pending; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-      const Cubic cubic{{coefficients[0][lane], coefficients[1][lane], coefficients[2][lane],
-                         coefficients[3][lane]}};
+      const scalar::Cubic cubic{coefficients[0][lane], coefficients[1][lane], coefficients[2][lane],
+                                coefficients[3][lane]};
       const bool isRising = rising >> lane & 1;
-      const double s = isRising ? 0.0 : findFirstNonNegative(cubic);
+      const double s = isRising ? 0.0 : scalar::findFirstNonNegative(cubic, scalar::rootRounding);
       if (s == infinity) {
         if constexpr (withMaxima)
           updateMaximum(lane, cubic, begins[lane], lengths[lane]);
@@ -294,11 +296,12 @@ private:
   }
 
   /// Updates the ray maximum in a cell without a hit.
-  void updateMaximum(std::size_t lane, const Cubic& cubic, double begin, double length) {
-    const std::array<double, 2> turns = findTurningPoints(cubic);
+  void updateMaximum(std::size_t lane, const scalar::Cubic& cubic, double begin, double length) {
+    const scalar::TurningPoints turns = scalar::findTurningPoints(cubic);
     bool isOnRidge = begin - m_ridgeEnds[lane] < plateauTolerance;
-    for (const double s : {0.0, turns[0], turns[1], 1.0}) { // the cubic is monotonic in between
-      const double height = cubic(s);
+    for (const double s :
+         {0.0, turns.first, turns.second, 1.0}) { // the cubic is monotonic in between
+      const double height = scalar::evalCubic(cubic, s);
       if (isOnRidge ? isHigher(lane, height) : isNewMaximum(lane, height)) {
         m_maxima[lane] = height;
         m_maximaT[lane] = begin + s * length;

@@ -32,7 +32,7 @@ struct Features {
   Int clipsCameraRays = 0;
   Int mapCount = 0;
   Int componentKind = 0; ///< 0 one, 1 tinted, 2 mixed
-  Int hasUnclipped = 0, hasContext = 0;
+  Int hasUnclipped = 0, hasContext = 0, hasSilhouettes = 0;
 };
 
 } // namespace fenestra::core::gpu

@@ -1,6 +1,8 @@
 #include "integrator/gpu/SceneTables.h"
 
 #include "base/Sampler.h"
+#include "clip/field/SilhouetteCells.h"
+#include "clip/focus/FocusCells.h"
 
 #include <bit>
 #include <cstring>
@@ -18,12 +20,6 @@ VoxelAxis toVoxelAxis(const SimdAxis& axis) {
 }
 
 } // namespace
-
-std::optional<std::string> SceneTables::findUnsupported(const SimdMedium& medium) {
-  if (medium.silhouette)
-    return "exact boundaries";
-  return std::nullopt;
-}
 
 SceneTables::SceneTables(const SimdMedium& medium, const SimdShading& shading,
                          const CameraTable& camera, const CameraRays& cameraRays,
@@ -58,6 +54,17 @@ Int SceneTables::append(float x) {
 Int SceneTables::append(Int x) {
   words.push_back(static_cast<std::uint32_t>(x));
   return static_cast<Int>(words.size()) - 1;
+}
+Int SceneTables::appendInts(std::span<const std::int32_t> numbers32) {
+  const auto at = static_cast<Int>(words.size());
+  words.insert(words.end(), numbers32.begin(), numbers32.end());
+  return at;
+}
+Int SceneTables::appendBytes(std::span<const std::uint8_t> bytes) {
+  const auto at = static_cast<Int>(words.size());
+  words.resize(words.size() + bytes.size() / sizeof(UInt));
+  std::memcpy(words.data() + at, bytes.data(), bytes.size());
+  return at;
 }
 Int SceneTables::append(const std::array<float, 3>& v) {
   const Int at = append(v[0]);
@@ -157,23 +164,15 @@ void SceneTables::setLabels(const SimdMedium& medium, const SimdShading& shading
   numbers.weightsX = toAxis(weights->axes[0]);
   numbers.weightsY = toAxis(weights->axes[1]);
   numbers.weightsZ = toAxis(weights->axes[2]);
-  const auto appendAll = [&](const std::int32_t* from, std::size_t count) {
-    const auto at = static_cast<Int>(words.size());
-    words.insert(words.end(), from, from + count);
-    return at;
-  };
-  numbers.bricks = appendAll(weights->bricks, weights->brickCount);
-  numbers.planes = static_cast<Int>(words.size());
+  numbers.bricks = appendInts({weights->bricks, weights->brickCount});
   static_assert(sizeof(LabelWeights::Plane) == planeBytes);
-  words.resize(words.size() + weights->planeCount * planeBytes / sizeof(UInt));
-  std::memcpy(&words[static_cast<std::size_t>(numbers.planes)], weights->planes,
-              weights->planeCount * planeBytes);
+  numbers.planes = appendBytes(
+      {reinterpret_cast<const std::uint8_t*>(weights->planes), weights->planeCount * planeBytes});
   if (!medium.mixture)
     return;
   features.hasUnclipped = medium.mixture->hasUnclipped ? 1 : 0;
-  numbers.mergedBricks = appendAll(medium.mixture->merged.bricks, weights->brickCount);
-  numbers.unclipped =
-      appendAll(medium.mixture->isUnclipped.data(), medium.mixture->isUnclipped.size());
+  numbers.mergedBricks = appendInts({medium.mixture->merged.bricks, weights->brickCount});
+  numbers.unclipped = appendInts(medium.mixture->isUnclipped);
 }
 
 void SceneTables::setContext(const SimdMedium& medium) {
@@ -299,6 +298,43 @@ void SceneTables::setClip(const SimdMedium& medium) {
   numbers.depthColumns = medium.depthColumns;
   for (std::size_t i = 0; i < medium.depthCount; ++i)
     append(medium.depths[i]);
+  if (medium.silhouette)
+    setSilhouettes(*medium.silhouette);
+}
+
+void SceneTables::setSilhouettes(const SilhouetteCells& silhouettes) {
+  features.hasSilhouettes = 1;
+  numbers.silhouetteCells = appendInts(silhouettes.indices());
+  numbers.silhouettes = static_cast<Int>(words.size());
+  const auto& bounds = silhouettes.depthBounds();
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    append(bounds[i].min);
+    append(bounds[i].max);
+    append(silhouettes.isInner(static_cast<std::int32_t>(i)) ? 1 : 0);
+  }
+  numbers.surfaceOffset = narrow(silhouettes.offset());
+
+  const FocusTracer& tracer = silhouettes.tracer();
+  const Camera& camera = tracer.camera();
+  Affine fromView = Affine(Mat3(camera.right(), camera.up(), camera.forward()));
+  fromView.translation() = camera.pose().position + camera.targetDepth() * camera.forward();
+  const FocusCells& cells = tracer.cells();
+  numbers.viewToCells = affineRows(cells.worldToCell() * fromView);
+  numbers.viewToIndex = affineRows(tracer.domain().grid().worldToIndex * fromView);
+  numbers.isFocusInside = tracer.isFocusInside() ? 1 : 0;
+  const Vec3 count = cells.box().upper;
+  numbers.focusCellsX = narrow(count.x());
+  numbers.focusCellsY = narrow(count.y());
+  numbers.focusCellsZ = narrow(count.z());
+  const FocusCells::Layout layout = cells.layout();
+  numbers.focusBlocksX = static_cast<Int>(layout.blockCount.x());
+  numbers.focusBlocksY = static_cast<Int>(layout.blockCount.y());
+  numbers.focusBlocksZ = static_cast<Int>(layout.blockCount.z());
+  numbers.focusBlocks =
+      appendInts({layout.blocks, static_cast<std::size_t>(layout.blockCount.prod())});
+  numbers.focusCorners = appendBytes({layout.corners, layout.count * 64});
+  numbers.focusValues = layout.values ? appendBytes({layout.values, layout.count * 128}) : -1;
+  numbers.focusScale = narrow(layout.valueScale);
 }
 
 } // namespace fenestra::core::gpu

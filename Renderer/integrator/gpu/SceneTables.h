@@ -6,17 +6,12 @@
 #include "integrator/simd/CameraRays.h"
 #include "integrator/simd/Shading.h"
 
-#include <optional>
-#include <string>
+#include <span>
 #include <vector>
 
 namespace fenestra::core::gpu {
 
 struct SceneTables {
-  /// What the shaders lack for a scene that the SIMD integrator supports; none: they support it.
-  static std::optional<std::string> findUnsupported(const SimdMedium& medium);
-
-  /// The scene must be supported.
   SceneTables(const SimdMedium& medium, const SimdShading& shading, const CameraTable& camera,
               const CameraRays& cameraRays, bool isStratified);
 
@@ -28,6 +23,8 @@ private:
   Int append(float x);
   Int append(Int x);
   Int append(const std::array<float, 3>& v);
+  Int appendInts(std::span<const std::int32_t> numbers32);
+  Int appendBytes(std::span<const std::uint8_t> bytes);
   void setVoxels(const SimdMedium& medium);
   void setCells(const SimdMedium& medium);
   void setFunctions(const SimdMedium& medium, const SimdShading& shading);
@@ -38,6 +35,7 @@ private:
   void setMaps(const SimdShading& shading);
   void setCamera(const CameraTable& camera);
   void setClip(const SimdMedium& medium);
+  void setSilhouettes(const SilhouetteCells& silhouettes);
 };
 
 } // namespace fenestra::core::gpu

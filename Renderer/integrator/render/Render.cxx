@@ -419,7 +419,7 @@ bool canUseSimd(const SceneView& scene) {
          (!scene.tint || SimdLabelWeights::isSupported(*scene.tint->weights));
 }
 
-std::optional<std::string> findGpuObstacle(const SceneView& scene, const RenderSettings& settings) {
+std::optional<std::string> findGpuObstacle(const SceneView& scene) {
   if (!canUseSimd(scene))
     return "the scene needs double precision";
   try {
@@ -427,14 +427,11 @@ std::optional<std::string> findGpuObstacle(const SceneView& scene, const RenderS
   } catch (const gpu::DeviceError& error) {
     return error.what();
   }
-  const SimdScene simd(scene, settings, neverStopped);
-  const std::optional<std::string> missing =
-      gpu::SceneTables::findUnsupported(simd.tracker.medium());
-  return missing ? std::optional("the shader lacks " + *missing) : std::nullopt;
+  return std::nullopt;
 }
 
 std::string findTarget(const SceneView& scene, const RenderSettings& settings) {
-  if (settings.integrator == Integrator::gpu && !findGpuObstacle(scene, settings))
+  if (settings.integrator == Integrator::gpu && !findGpuObstacle(scene))
     return gpu::Device::open()->info().target();
   return isSimdUsed(scene, settings) ? instructionSet() : "scalar";
 }
@@ -442,7 +439,7 @@ std::string findTarget(const SceneView& scene, const RenderSettings& settings) {
 RenderResult render(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
                     std::optional<RenderResult> resumed) {
   std::string failure;
-  if (settings.integrator == Integrator::gpu && !findGpuObstacle(scene, settings))
+  if (settings.integrator == Integrator::gpu && !findGpuObstacle(scene))
     try {
       return inArena(settings, [&] {
         return traceGpu(scene, settings, monitor.stop,

@@ -138,8 +138,8 @@ struct RenderResult {
 /// True if SIMD supports the scene (SimdTracker::isSupported, SimdShading::isSupported).
 bool canUseSimd(const SceneView& scene);
 
-/// Why the GPU cannot render a scene: the device, or what its shader lacks. None: it can.
-std::optional<std::string> findGpuObstacle(const SceneView& scene, const RenderSettings& settings);
+/// Why the GPU cannot render a scene; none: it can, if the device has memory enough.
+std::optional<std::string> findGpuObstacle(const SceneView& scene);
 
 /// RenderResult::target that a render will have.
 std::string findTarget(const SceneView& scene, const RenderSettings& settings);

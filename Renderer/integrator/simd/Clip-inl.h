@@ -106,7 +106,7 @@ inline Float3 cutGradient(const SimdMedium& medium, const Float3& p, LaneMask wh
   if (medium.clipKind != SimdMedium::ClipKind::depthLinear)
     return zeroUnless(isCut, length * Float3(medium.cutNormal));
   const Surface surface = interpolateSurface(medium, view);
-  const Float3 gradient = distanceGradient(medium.clip.isPerspective != 0, medium.clip.targetDepth, view,
-                                           surface.slopeX, surface.slopeY);
+  const Float3 gradient = distanceGradient(medium.clip.isPerspective != 0, medium.clip.targetDepth,
+                                           view, surface.slopeX, surface.slopeY);
   return zeroUnless(isCut, length * normalize(mapDirection(medium.fromView, gradient)));
 }

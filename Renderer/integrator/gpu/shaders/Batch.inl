@@ -14,6 +14,7 @@ CONSTANT Int directionalWords = 7;
 CONSTANT Int areaWords = 20;
 CONSTANT Int sphereWords = 8;
 CONSTANT Int mapWords = 13;
+CONSTANT Int silhouetteWords = 3;
 
 /// Voxels along an edge of a brick, and bytes of a LabelWeights::Plane.
 CONSTANT Int brickVoxels = 5;

@@ -276,11 +276,18 @@ FORMULA bool collide(INOUT(PathState) s, STRUCT(Walk) walk, STRUCT(Cell) cell, I
   const Float u = s.acceptance;
   Float extinction = all.clipped + all.unclipped;
   if (clipKind != clipNone && cell.isCut) {
-    // The clip matters only where the collision could be real without it.
-    const LaneMask isPossible =
+    // The clip is evaluated only where it matters: where the collision could be real without it.
+    LaneMask isPossible =
         s.phase == pathRay ? u * cell.majorant < extinction : all.clipped > 0.0F;
+    Float clipped = all.clipped;
+    if (hasSilhouettes != 0 && hasUnclipped == 0 && s.phase == shadowRay && isPossible) {
+      // Delta tracking: exact surfaces are queried only if the collision would be real.
+      isPossible = toUniform(nextRayBits(s)) * cell.majorant < extinction;
+      clipped = cell.majorant;
+      extinction = 0.0F;
+    }
     if (isPossible)
-      extinction = all.clipped * clipWeight(point) + all.unclipped;
+      extinction = clipped * clipWeight(point) + all.unclipped;
   }
   s.opticalDepth = toExponential(nextRayBits(s));
   s.acceptance = toUniform(nextRayBits(s));

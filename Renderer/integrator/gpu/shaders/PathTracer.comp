@@ -24,6 +24,7 @@ layout(constant_id = 14) const int mapCount = 0;
 layout(constant_id = 15) const int componentKind = 0; ///< 0 one, 1 tinted, 2 mixed
 layout(constant_id = 16) const int hasUnclipped = 0;
 layout(constant_id = 17) const int hasContext = 0;
+layout(constant_id = 18) const int hasSilhouettes = 0;
 
 #include "formulas/Types.glsl"
 #include "formulas/Vectors.inl"
@@ -31,6 +32,7 @@ layout(constant_id = 17) const int hasContext = 0;
 #include "formulas/Uniforms.inl"
 #include "formulas/Exponential.inl"
 #include "formulas/Interpolation.inl"
+#include "formulas/CellCubic.inl"
 #include "formulas/ClipTable.inl"
 #include "formulas/Clip.inl"
 #include "formulas/Scattering.inl"
@@ -102,6 +104,7 @@ void countWork(int kind) {
 }
 
 #include "integrator/gpu/shaders/Medium.inl"
+#include "integrator/gpu/shaders/Silhouettes.inl"
 #include "integrator/gpu/shaders/Clip.inl"
 #include "integrator/gpu/shaders/Labels.inl"
 #include "integrator/gpu/shaders/Maps.inl"

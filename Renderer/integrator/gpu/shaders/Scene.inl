@@ -20,6 +20,8 @@ struct SceneNumbers {
   AffineRows fromView;     ///< directions, view space to world
   AffineRows toWeights;    ///< points, index to the label weights' index space
   AffineRows toFocus;      ///< points, index to the focus mask's index space
+  AffineRows viewToCells;  ///< points, view space (depth relative to the target) to cell space
+  AffineRows viewToIndex;  ///< the same to index space
   AffineRow toPlane;       ///< distance from a clip plane; > 0: removed
   AffineRow cutNormal;     ///< of a plane; else the view axis
   AffineRow lower, upper;  ///< the domain's box, index space
@@ -61,6 +63,16 @@ struct SceneNumbers {
   Int depths, depthColumns; ///< offset and columns of the depth buffer
   Real cutSlope;            ///< length of a soft cut's gradient, mm^-1
 
-  Int unused[2]; ///< so that the clip begins at 16 bytes
-  ClipTable clip;
+  /// Silhouette cells: per sample its cell, or -1; silhouetteWords per cell: depth bounds, isInner.
+  Int silhouetteCells, silhouettes;
+  Real surfaceOffset; ///< SilhouetteCells::move
+  /// FocusCells: cells and blocks along the axes; offsets of blocks, corners and values (-1: voxels
+  /// are 0 and 1 only); indicator per unit of a value.
+  Real focusCellsX, focusCellsY, focusCellsZ;
+  Int focusBlocksX, focusBlocksY, focusBlocksZ;
+  Int focusBlocks, focusCorners, focusValues;
+  Real focusScale;
+  Int isFocusInside; ///< the domain contains all cells
+
+  ClipTable clip; ///< begins at a multiple of 16 bytes: Layout.h
 };
