@@ -46,5 +46,30 @@ TEST(GpuFeatures, AreAllInTheScenes) {
   EXPECT_EQ(componentKinds.size(), 3U);
 }
 
+/// Sizes of a render's parts: the device's work, and passes.
+struct Slicing {
+  gpu::LaneLimits limits;
+  std::uint64_t passSamples;
+};
+
+class GpuSlicing : public GpuTest {};
+
+TEST_F(GpuSlicing, ChangesNoBit) {
+  const GpuScene& s = findFeatureScene("surface");
+  const RenderResult once = renderOnGpu(s.scene, s.settings);
+  constexpr Slicing slicings[] = {{{.threads = 64, .paths = 100, .maxSteps = 1}, 4},
+                                  {{.threads = 128, .paths = 64, .maxSteps = 7}, 1},
+                                  {{.threads = 64, .paths = 1024, .maxSteps = 65536}, 3},
+                                  {{.threads = 1024, .paths = 333, .maxSteps = 40}, 4}};
+  for (const auto& [limits, passSamples] : slicings) {
+    RenderSettings settings = s.settings;
+    settings.laneLimits = limits;
+    settings.passSamples = passSamples;
+    const RenderResult result = renderOnGpu(s.scene, settings);
+    expectIdentical(result.film, once.film);
+    expectEqualCounters(result.counters, once.counters);
+  }
+}
+
 } // namespace
 } // namespace fenestra::core::testing::GpuTests
