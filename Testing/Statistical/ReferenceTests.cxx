@@ -2,7 +2,7 @@
 // are parsed like those of `fenestra render`.
 
 #include "EstimateImages.h"
-#include "Formulas/Twin.h"
+#include "Gpu/Twin.h"
 #include "Oracle/Oracle.h"
 #include "RunSettings.h"
 #include "Support.h"
@@ -161,7 +161,9 @@ TEST_P(TwinReference, ImageAgreesWithinErrors) {
   const ReferenceCase& c = GetParam();
   const RenderOptions options = readArguments(c);
   const PreparedScene scene(options.scene);
-  const Film film = twin::render(scene.view(), c.samples, 44);
+  RenderSettings settings = makeSettings(options, scene.background());
+  settings.seed = 44;
+  const Film film = twin::render(scene.view(), settings).film;
   expectAgreement(makeImage(film, scene.camera(), scene.clip(), options.layers), c,
                   isLongRun() ? Bounds{4, 0.07, 0.05} : Bounds{16, 0.3, 0.2});
 }
