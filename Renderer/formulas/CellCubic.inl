@@ -38,7 +38,8 @@ FORMULA TurningPoints findTurningPoints(STRUCT(Cubic) cubic) {
 }
 
 /// Root of a monotonically increasing cubic with cubic(low) < 0 <= cubic(high). Newton iteration
-/// from the secant root, with bisection where a step leaves the bracket. `rounding`: of s in [0, 1].
+/// from the secant root, with bisection where a step leaves the bracket. `rounding`: of s in [0,
+/// 1].
 FORMULA Float findRoot(STRUCT(Cubic) cubic, Float low, Float high, Real rounding) {
   const Float atLow = evalCubic(cubic, low);
   Float s = low + (high - low) * (atLow / (atLow - evalCubic(cubic, high)));

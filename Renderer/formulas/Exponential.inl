@@ -1,7 +1,7 @@
 // The exponential function, in float, without functions of the device.
 
-/// e^x - 1, with a relative error of 2e-7. Cody and Waite's reduction to |r| <= log(2) / 2 and Taylor
-/// series; x at most 80.
+/// e^x - 1, with a relative error of 2e-7. Cody and Waite's reduction to |r| <= log(2) / 2 and
+/// Taylor series; x at most 80.
 FORMULA Float expm1(Float x) {
   const Float power = floor(fma(max(x, -80.0F), 1.44269504F, 0.5F));
   const Float r = fma(power, 2.12194440e-4F, fnma(power, 0.693359375F, max(x, -80.0F)));

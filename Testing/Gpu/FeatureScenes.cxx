@@ -42,7 +42,7 @@ Combination makeSurface() {
   Combination c =
       makeSimple(3, VoxelFactor::float32, GridFactor::shearedMirrored, LightFactor::rectangle);
   c.view = ViewFactor::perspective;
-  c.clip = ClipFactor::surface;
+  c.clip = ClipFactor::exactSurface;
   c.edge = EdgeFactor::softGhost;
   c.isHybrid = true;
   c.isCoated = true;

@@ -74,7 +74,7 @@ TEST_F(GpuStress, ExtinctionBeyondFloatNeedsTheCpu) {
   RenderSettings settings;
   settings.integrator = Integrator::gpu;
   makeScene(cube, 1e6, makeWaves).visitView([&](const SceneView& scene) {
-    EXPECT_EQ(findGpuObstacle(scene, settings), "the scene needs double precision");
+    EXPECT_EQ(findGpuObstacle(scene), "the scene needs double precision");
   });
 }
 

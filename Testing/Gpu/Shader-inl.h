@@ -44,6 +44,7 @@ inline Float floor(Float x) {
 
 #include "formulas/Uniforms.inl"
 // Uses no others:
+#include "formulas/CellCubic.inl"
 #include "formulas/Exponential.inl"
 #include "formulas/Interpolation.inl"
 #include "formulas/LightTables.inl"
@@ -112,6 +113,8 @@ private:
 
 #include "integrator/gpu/shaders/Medium.inl"
   // Uses the medium:
+#include "integrator/gpu/shaders/Silhouettes.inl"
+  // Uses silhouettes:
 #include "integrator/gpu/shaders/Clip.inl"
 #include "integrator/gpu/shaders/Labels.inl"
 #include "integrator/gpu/shaders/Maps.inl"

@@ -41,8 +41,6 @@ public:
         m_tables(m_tracker.medium(), m_shading, m_table, m_cameraRays, m_sampler.isStratified()) {
     if (!canUseSimd(scene))
       throw std::invalid_argument("the scene needs double precision");
-    if (const auto missing = SceneTables::findUnsupported(m_tracker.medium()))
-      throw std::invalid_argument("the shader lacks " + *missing);
   }
 
   Result render(int width, int height, std::uint64_t samples) const {

@@ -36,8 +36,8 @@ FORMULA Surface interpolateSurface(STRUCT(ViewPoints) view) {
   return surface;
 }
 
-/// Depth of the surface. In silhouette cells (SilhouetteCells) it is exact if a point at `depth` can
-/// lie on it or within its soft edge; infinity: exact at all depths.
+/// Depth of the surface. In silhouette cells (SilhouetteCells) it is exact if a point at `depth`
+/// can lie on it or within its soft edge; infinity: exact at all depths.
 FORMULA Float refineAtSilhouette(STRUCT(Surface) surface, STRUCT(ViewPoints) view, Float depth) {
   const Int cell = loadInt(scene.silhouetteCells + surface.first);
   if (cell < 0)

@@ -24,10 +24,10 @@ FORMULA Float interpolateWeights(STRUCT(CornerWeights) weights, Float3 at) {
 /// Visits the components at a point; `component` and `fraction` are those of the current one.
 struct LabelCursor {
   Int component;
-  Float fraction; ///< label weight, above 0
-  Int plane;      ///< byte of the next plane of a mixed brick; -1: only the remainder is left
-  Int voxel;      ///< the lowest of the eight, within its brick
-  Float3 inside;  ///< distances from it, 0 to 1
+  Float fraction;     ///< label weight, above 0
+  Int plane;          ///< byte of the next plane of a mixed brick; -1: only the remainder is left
+  Int voxel;          ///< the lowest of the eight, within its brick
+  Float3 inside;      ///< distances from it, 0 to 1
   CornerWeights rest; ///< of the component that gets the remainder
   Int restComponent;
   LaneMask isPure; ///< the brick has one component alone
@@ -109,12 +109,11 @@ FORMULA bool isFocus(Float3 index) {
   const Int x1 = x0 + scene.focusX.step;
   const Int y1 = y0 + scene.focusY.step;
   const Int z1 = z0 + scene.focusZ.step;
-  const Float near = interpolate(loadFocus(x0, y0, z0), loadFocus(x1, y0, z0),
-                                 loadFocus(x0, y1, z0), loadFocus(x1, y1, z0), x.fraction,
-                                 y.fraction);
-  const Float far = interpolate(loadFocus(x0, y0, z1), loadFocus(x1, y0, z1),
-                                loadFocus(x0, y1, z1), loadFocus(x1, y1, z1), x.fraction,
-                                y.fraction);
+  const Float near =
+      interpolate(loadFocus(x0, y0, z0), loadFocus(x1, y0, z0), loadFocus(x0, y1, z0),
+                  loadFocus(x1, y1, z0), x.fraction, y.fraction);
+  const Float far = interpolate(loadFocus(x0, y0, z1), loadFocus(x1, y0, z1), loadFocus(x0, y1, z1),
+                                loadFocus(x1, y1, z1), x.fraction, y.fraction);
   return lerp(near, far, z.fraction) >= scene.focusLevel;
 }
 

@@ -19,10 +19,11 @@ FORMULA Float interpolateScalar(Float3 p) {
   const Int x1 = x0 + scene.voxelsX.step;
   const Int y1 = y0 + scene.voxelsY.step;
   const Int z1 = z0 + scene.voxelsZ.step;
-  const Float near = interpolate(loadVoxel(x0, y0, z0), loadVoxel(x1, y0, z0),
-                                 loadVoxel(x0, y1, z0), loadVoxel(x1, y1, z0), x.fraction, y.fraction);
-  const Float far = interpolate(loadVoxel(x0, y0, z1), loadVoxel(x1, y0, z1),
-                                loadVoxel(x0, y1, z1), loadVoxel(x1, y1, z1), x.fraction, y.fraction);
+  const Float near =
+      interpolate(loadVoxel(x0, y0, z0), loadVoxel(x1, y0, z0), loadVoxel(x0, y1, z0),
+                  loadVoxel(x1, y1, z0), x.fraction, y.fraction);
+  const Float far = interpolate(loadVoxel(x0, y0, z1), loadVoxel(x1, y0, z1), loadVoxel(x0, y1, z1),
+                                loadVoxel(x1, y1, z1), x.fraction, y.fraction);
   return lerp(near, far, z.fraction);
 }
 
@@ -31,8 +32,8 @@ struct Segment {
   Int index;
   Float beyondStart; ///< scalar minus the segment's start; not finite in the first segment
 };
-/// `table`: offset of its seven words: offsets of positions, bins and lines, words per channel; then
-/// start of the bins, bins per unit, last bin.
+/// `table`: offset of its seven words: offsets of positions, bins and lines, words per channel;
+/// then start of the bins, bins per unit, last bin.
 FORMULA Segment findSegment(Int table, Float scalar) {
   const Int positions = loadInt(table);
   const Float s = min(scalar, largestReal); // interpolation can overflow
@@ -177,8 +178,8 @@ FORMULA Float3 pointAt(STRUCT(Walk) walk, Float t) {
                 fms(positionAt(walk.z, t), scene.cellsZ.cellEdge, 0.5F));
 }
 
-/// Majorant cell (SimdMajorants) at t, and the t at which the ray leaves it and all cells within its
-/// skip radius.
+/// Majorant cell (SimdMajorants) at t, and the t at which the ray leaves it and all cells within
+/// its skip radius.
 struct Cell {
   Float majorant; ///< mm^-1
   Float exit;     ///< mm

@@ -10,18 +10,18 @@ CONSTANT Int shadowRay = 2; ///< on a ray to a light; the scattered ray is next
 
 /// Vectors alternate with numbers: GLSL aligns vectors to 16 bytes.
 struct PathState {
-  Float3 origin; ///< of the ray, index space
-  Float t;       ///< position on the ray, mm
-  Float3 ray;    ///< its direction, index space per mm
-  Float end;     ///< its length, mm
+  Float3 origin;    ///< of the ray, index space
+  Float t;          ///< position on the ray, mm
+  Float3 ray;       ///< its direction, index space per mm
+  Float end;        ///< its length, mm
   Float3 direction; ///< of the camera ray or scattered ray: unit, world axes
   Float scatterPdf; ///< of `direction`
   Float3 throughput;
   Float opticalDepth; ///< to the next tentative collision
   Float3 radiance;
-  Float acceptance; ///< random number that accepts or rejects that collision
-  Float3 light;     ///< radiance of the sampled light, per transmittance
-  Float ratio;      ///< transmittance of the shadow ray so far
+  Float acceptance;            ///< random number that accepts or rejects that collision
+  Float3 light;                ///< radiance of the sampled light, per transmittance
+  Float ratio;                 ///< transmittance of the shadow ray so far
   Float depth, depthPerLength; ///< of the camera ray's start, mm; per mm of the ray
   Int bounces;
   Int phase;
@@ -182,8 +182,8 @@ FORMULA void recordFirstHit(STRUCT(PathState) s, STRUCT(Vertex) vertex, Float di
 
 FORMULA ScatterEval evaluateVertex(STRUCT(Vertex) vertex, Float3 outgoing) {
   if (vertex.isSurface)
-    return evaluate(
-        makeSurfaceLobes(vertex.bsdf, vertex.incoming, vertex.gradient, vertex.albedo), outgoing);
+    return evaluate(makeSurfaceLobes(vertex.bsdf, vertex.incoming, vertex.gradient, vertex.albedo),
+                    outgoing);
   return evaluate(makePhaseLobe(vertex.bsdf.g, vertex.incoming, vertex.albedo), outgoing);
 }
 FORMULA ScatterSamples sampleVertex(STRUCT(Vertex) vertex, Float choice, Float u, Float v) {
@@ -268,7 +268,8 @@ FORMULA void handleVertex(INOUT(PathState) s, Float distance, Float scalar) {
 }
 
 /// Handles a tentative collision. Returns true if the ray ends there.
-FORMULA bool collide(INOUT(PathState) s, STRUCT(Walk) walk, STRUCT(Cell) cell, INOUT(Float) scalar) {
+FORMULA bool collide(INOUT(PathState) s, STRUCT(Walk) walk, STRUCT(Cell) cell,
+                     INOUT(Float) scalar) {
   countWork(lookupCount);
   const Float3 point = pointAt(walk, s.t);
   scalar = interpolateScalar(point);
@@ -277,8 +278,7 @@ FORMULA bool collide(INOUT(PathState) s, STRUCT(Walk) walk, STRUCT(Cell) cell, I
   Float extinction = all.clipped + all.unclipped;
   if (clipKind != clipNone && cell.isCut) {
     // The clip is evaluated only where it matters: where the collision could be real without it.
-    LaneMask isPossible =
-        s.phase == pathRay ? u * cell.majorant < extinction : all.clipped > 0.0F;
+    LaneMask isPossible = s.phase == pathRay ? u * cell.majorant < extinction : all.clipped > 0.0F;
     Float clipped = all.clipped;
     if (hasSilhouettes != 0 && hasUnclipped == 0 && s.phase == shadowRay && isPossible) {
       // Delta tracking: exact surfaces are queried only if the collision would be real.

@@ -33,7 +33,7 @@ struct SceneNumbers {
 
   VoxelAxis voxelsX, voxelsY, voxelsZ;
   CellAxis cellsX, cellsY, cellsZ;
-  Int cells; ///< offset of SimdMajorants::codes
+  Int cells;               ///< offset of SimdMajorants::codes
   Real firstCell, endCell; ///< index of the first inner and of the last cell
   Real overshoot;
 

@@ -79,7 +79,8 @@ FORMULA Float fractionAt(STRUCT(FocusAxis) axis, Float t) {
 FORMULA Float loadCorner(Int corners, Int value, Int i) {
   if (scene.focusValues < 0)
     return (corners & (1 << i)) != 0 ? 0.5F : -0.5F;
-  const Int at = value + (i & 1) + ((i >> 1) & 1) * brickVoxels + (i >> 2) * brickVoxels * brickVoxels;
+  const Int at =
+      value + (i & 1) + ((i >> 1) & 1) * brickVoxels + (i >> 2) * brickVoxels * brickVoxels;
   return fms(toFloat(loadByte(at)), scene.focusScale, 0.5F);
 }
 /// The cubic along a ray from (x, y, z) in a cell, which moves by (u, v, w) while s rises to 1.
@@ -115,7 +116,8 @@ FORMULA Cubic makeCubic(Int corners, Int value, Float3 at, Float3 move) {
 struct RayMaximum {
   Float height, t, ridgeEnd;
 };
-FORMULA void considerMaximum(INOUT(RayMaximum) best, INOUT(LaneMask) isOnRidge, Float height, Float t) {
+FORMULA void considerMaximum(INOUT(RayMaximum) best, INOUT(LaneMask) isOnRidge, Float height,
+                             Float t) {
   LaneMask isNew = noLanes();
   if (isOnRidge)
     isNew = height > best.height + max(equalIndicator, min(ridgeTolerance, -height / replaceRatio));
@@ -175,7 +177,8 @@ FORMULA FocusHit traceFocus(STRUCT(FocusRay) ray, LaneIntervals range, bool want
     const Float exit = min(range.end, max(t, leave));
     Int corners = 0;
     if (block != 0)
-      corners = loadByte(scene.focusCorners * 4 + block * 64 + (i & 3) + 4 * ((j & 3) + 4 * (k & 3)));
+      corners =
+          loadByte(scene.focusCorners * 4 + block * 64 + (i & 3) + 4 * ((j & 3) + 4 * (k & 3)));
     if (corners != 0) {
       const Int value = scene.focusValues * 4 + block * planeBytes + (i & 3) +
                         brickVoxels * ((j & 3) + brickVoxels * (k & 3));
@@ -214,9 +217,9 @@ FORMULA bool isInFocus(STRUCT(FocusRay) ray, Float x, Float y, Float t) {
   here.end = t;
   here = clipFocusRay(here, x, y);
   const Float3 p = ray.origin + t * ray.direction;
-  if (here.begin > t || here.end < t || !(p.x >= 0.0F && p.y >= 0.0F && p.z >= 0.0F &&
-                                          p.x < scene.focusCellsX && p.y < scene.focusCellsY &&
-                                          p.z < scene.focusCellsZ))
+  if (here.begin > t || here.end < t ||
+      !(p.x >= 0.0F && p.y >= 0.0F && p.z >= 0.0F && p.x < scene.focusCellsX &&
+        p.y < scene.focusCellsY && p.z < scene.focusCellsZ))
     return false;
   const Int i = toInt(p.x);
   const Int j = toInt(p.y);
