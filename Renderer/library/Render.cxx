@@ -48,6 +48,8 @@ core::RenderSettings makeSettings(const RenderOptions& options, const core::Prep
   settings.isDisplayNoise = options.isDenoised;
   settings.seed = options.seed;
   settings.threads = options.threads;
+  if (options.device == Device::gpu)
+    settings.integrator = core::Integrator::gpu;
   settings.path.wantNormals = true;
   settings.path.bounces = options.bounces.value_or(settings.path.bounces);
   settings.path.background = options.background

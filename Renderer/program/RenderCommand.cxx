@@ -166,6 +166,7 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
   json["gradients"] = c.gradients;
   json["cells"] = {{"all", majorants.size()}, {"empty", majorants.emptyCount()}};
   json["emptyPixels"] = samples.deterministicPixels;
+  json["target"] = result.target;
   json["sampling"] = toString(options.settings.sampling);
   json["samplesPerPixel"] = {{"min", samples.min}, {"mean", samples.mean}, {"max", samples.max}};
   json["noise"] = result.film.noise(); // null: infinite
@@ -265,6 +266,20 @@ int finishShard(const RenderOptions& options, const RenderResult& result, Checkp
   return isStopped ? stopStatus() : 0;
 }
 
+/// True for `--device list`, which needs no input.
+bool hasDeviceList(const std::vector<std::string>& arguments) {
+  const auto option = std::ranges::find(arguments, "--device");
+  return std::ranges::find(arguments, "--device=list") != arguments.end() ||
+         (option != arguments.end() && option + 1 != arguments.end() && option[1] == "list");
+}
+
+std::string listDevices() {
+  std::string text;
+  for (const GpuInfo& gpu : listGpus())
+    text += concat(gpu.name, gpu.isUsed ? "" : " (not used: software)", "\n");
+  return text.empty() ? "no GPU found\n" : text;
+}
+
 /// Measures the focus, unless a stop was requested, and writes options.stats, if set.
 void writeStats(const RenderOptions& options, const PreparedScene& scene,
                 const RenderResult& result, const Stopwatch& total, RenderMonitor& monitor,
@@ -344,6 +359,8 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   outputs.commit();
   stats.write = watch.lap();
   stats.warnings = findStaleFiles(options, outputs);
+  if (!result.gpuFailure.empty())
+    stats.warnings.push_back("the CPU rendered, since the GPU failed: " + result.gpuFailure);
   warn(stats.warnings);
 
   writeStats(options, scene, result, total, monitor, stats, outputs);
@@ -365,6 +382,11 @@ int runRender(const ShareRender& share, int argc, char** argv, int first) {
   if (std::find(argv + first, argv + argc, std::string_view("--xml")) != argv + argc) {
     allowClosedOutput();
     std::cout << makeSlicerXml(renderSyntax) << std::flush;
+    return 0;
+  }
+  if (hasDeviceList({argv + first, argv + argc})) {
+    allowClosedOutput();
+    std::cout << listDevices() << std::flush;
     return 0;
   }
   const std::optional<OptionValues> given = parseCommandLine(renderSyntax, argc, argv, first);

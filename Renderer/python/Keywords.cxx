@@ -269,6 +269,8 @@ RenderOptions readRenderOptions(const py::dict& values) {
   keywords.take("bounces", options.bounces);
   keywords.take("seed", options.seed);
   keywords.take("threads", options.threads);
+  keywords.takeWord("device", options.device,
+                    Words<Device>{{"cpu", Device::cpu}, {"gpu", Device::gpu}});
   keywords.take("background", options.background, toBackground);
   keywords.finish();
   return options;

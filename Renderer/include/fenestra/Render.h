@@ -18,6 +18,10 @@ struct Background {
 };
 
 /// A render stops at the first of the limits.
+/// What renders. On `gpu` the CPU steps in where no GPU, or not the scene, allows it: the image's
+/// metadata state the "target" that rendered it.
+enum class Device { cpu, gpu };
+
 struct RenderOptions {
   int width = 512, height = 512;
   /// Limit of the mean number per pixel; by default 64 if there is no other limit, else none.
@@ -27,7 +31,8 @@ struct RenderOptions {
   bool isDenoised = true;             ///< adds Image::denoised()
   std::optional<std::uint64_t> bounces = {}; ///< limit of scatterings per path; unlimited
   std::uint64_t seed = 0;
-  int threads = 0;                           ///< 0: all
+  int threads = 0; ///< 0: all
+  Device device = Device::cpu;
   std::optional<Background> background = {}; ///< of a Slicer scene, else dark
 };
 

@@ -49,21 +49,6 @@ VkPhysicalDeviceProperties getProperties(VkPhysicalDevice physical) {
   return properties;
 }
 
-DeviceInfo describe(VkPhysicalDevice physical) {
-  const VkPhysicalDeviceProperties properties = getProperties(physical);
-  DeviceInfo info{properties.deviceName, concat("version ", properties.driverVersion),
-                  properties.deviceType};
-  if (properties.apiVersion < VK_API_VERSION_1_2)
-    return info;
-  VkPhysicalDeviceDriverProperties driver = {
-      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-  VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
-                                     .pNext = &driver};
-  vkGetPhysicalDeviceProperties2(physical, &all);
-  info.driver = concat(driver.driverName, " ", driver.driverInfo);
-  return info;
-}
-
 /// Order of preference; 0: not used.
 int rank(VkPhysicalDeviceType type) {
   const char* const admitted = std::getenv("FENESTRA_GPU");
@@ -77,6 +62,21 @@ int rank(VkPhysicalDeviceType type) {
   default:
     return admitted && std::string_view(admitted) == "software" ? 1 : 0;
   }
+}
+
+DeviceInfo describe(VkPhysicalDevice physical) {
+  const VkPhysicalDeviceProperties properties = getProperties(physical);
+  DeviceInfo info{properties.deviceName, concat("version ", properties.driverVersion),
+                  properties.deviceType, rank(properties.deviceType) > 0};
+  if (properties.apiVersion < VK_API_VERSION_1_2)
+    return info;
+  VkPhysicalDeviceDriverProperties driver = {
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+  VkPhysicalDeviceProperties2 all = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                     .pNext = &driver};
+  vkGetPhysicalDeviceProperties2(physical, &all);
+  info.driver = concat(driver.driverName, " ", driver.driverInfo);
+  return info;
 }
 
 /// Family of queues that compute, preferably without graphics, so that the display stays
@@ -126,7 +126,17 @@ std::vector<DeviceInfo> Device::list() {
   return devices;
 }
 
-std::shared_ptr<Device> Device::open() {
+/// The device of open(). Never destroyed: drivers do not expect calls at exit.
+struct SharedDevice {
+  std::mutex lock;
+  std::shared_ptr<const Device> device;
+};
+static SharedDevice& sharedDevice() {
+  static auto* const shared = new SharedDevice;
+  return *shared;
+}
+
+std::shared_ptr<const Device> Device::open() {
   const std::vector<VkPhysicalDevice> devices = listPhysical();
   const auto rankOf = [](VkPhysicalDevice device) {
     return rank(getProperties(device).deviceType);
@@ -134,13 +144,27 @@ std::shared_ptr<Device> Device::open() {
   const auto best = std::ranges::max_element(devices, {}, rankOf);
   if (best == devices.end() || rankOf(*best) == 0)
     throw DeviceError(findInstance() ? "no GPU found" : "no Vulkan loader found");
-  return std::shared_ptr<Device>(new Device(*best));
+  SharedDevice& shared = sharedDevice();
+  const std::lock_guard lock(shared.lock);
+  if (!shared.device)
+    shared.device = std::shared_ptr<const Device>(new Device(*best));
+  return shared.device;
+}
+
+void Device::forget() {
+  SharedDevice& shared = sharedDevice();
+  const std::lock_guard lock(shared.lock);
+  shared.device.reset();
 }
 
 Device::Device(VkPhysicalDevice physical)
     : m_info(describe(physical)), m_limits(getProperties(physical).limits) {
   vkGetPhysicalDeviceMemoryProperties(physical, &m_memory);
   createQueues(physical);
+  const VkPipelineCacheCreateInfo create = {.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO};
+  VkPipelineCache cache = VK_NULL_HANDLE;
+  check(vkCreatePipelineCache(m_device, &create, nullptr, &cache), "opening the device");
+  m_pipelineCache = {m_device, cache, vkDestroyPipelineCache};
 }
 
 void Device::createQueues(VkPhysicalDevice physical) {
@@ -170,6 +194,7 @@ void Device::createQueues(VkPhysicalDevice physical) {
 
 Device::~Device() {
   vkDeviceWaitIdle(m_device);
+  m_pipelineCache = {};
   vkDestroyDevice(m_device, nullptr);
 }
 

@@ -82,6 +82,7 @@ struct VoxelImage {
 struct DeviceInfo {
   std::string name, driver;
   VkPhysicalDeviceType type;
+  bool isUsed; ///< open() may choose it
 
   /// What images record: those of the same device and driver are bit-identical.
   std::string target() const { return name + ", " + driver; }
@@ -91,9 +92,12 @@ class Device {
 public:
   /// Devices of the machine; empty without a loader.
   static std::vector<DeviceInfo> list();
-  /// Opens the best device: discrete before integrated ones. Software devices count only if the
-  /// environment variable FENESTRA_GPU is "software". Throws DeviceError.
-  static std::shared_ptr<Device> open();
+  /// The best device: discrete before integrated ones. Software devices count only if the
+  /// environment variable FENESTRA_GPU is "software". All renders of the process share it, since
+  /// opening one takes long. Throws DeviceError.
+  static std::shared_ptr<const Device> open();
+  /// Lets the next call of open() open the device again, after an error.
+  static void forget();
 
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -104,6 +108,7 @@ public:
   VkDevice get() const { return m_device; }
   const VkPhysicalDeviceLimits& limits() const { return m_limits; }
   std::uint32_t family() const { return m_family; }
+  VkPipelineCache pipelineCache() const { return m_pipelineCache.get(); }
   std::size_t queueCount() const { return m_queues.size(); }
 
   Buffer makeBuffer(VkDeviceSize size, Memory memory) const;
@@ -131,6 +136,7 @@ private:
   VkDevice m_device = VK_NULL_HANDLE;
   std::uint32_t m_family = 0;
   std::vector<VkQueue> m_queues;
+  Owned<VkPipelineCache> m_pipelineCache; ///< compiled shaders of earlier renders
   mutable std::vector<std::mutex> m_queueLocks;
 };
 

@@ -89,7 +89,7 @@ void Pipeline::createPipeline(const Features& features) {
                 .pSpecializationInfo = &special},
       .layout = m_layout.get()};
   VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+  check(vkCreateComputePipelines(device, m_device->pipelineCache(), 1, &info, nullptr, &pipeline),
         "compiling the shader");
   m_pipeline = {device, pipeline, vkDestroyPipeline};
 }

@@ -1,16 +1,12 @@
 #include "integrator/render/Render.h"
 
-#include "base/InstructionSets.h"
 #include "base/Stopwatch.h"
-#include "integrator/gpu/PathIntegrator.h"
 #include "integrator/render/EmptyPixels.h"
 #include "integrator/render/SamplePlan.h"
-#include "integrator/render/TileStream.h"
-#include "integrator/scalar/PathIntegrator.h"
+#include "integrator/render/Tracing.h"
 
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <bit>
 #include <numeric>
@@ -20,31 +16,6 @@ namespace {
 
 /// Samples per pixel below which a noise estimate is too uncertain to stop the render.
 constexpr std::uint64_t minNoiseSamples = SamplePlan::pilotSamples;
-
-/// Traces one path after another with the scalar integrator.
-template <typename Voxel>
-struct ScalarTracer {
-  PathIntegrator<Voxel> integrator;
-
-  template <typename Source>
-  bool trace(Source& source, std::size_t maxPaths, Counters& counters) const {
-    const auto samples = std::make_unique<CameraSamples>();
-    do {
-      source.fill(*samples, std::min(maxPaths, RayBatch::capacity));
-      for (std::size_t i = 0; i < samples->size; ++i) {
-        const PrimarySamples numbers =
-            source.sampler().generate({samples->start[i], samples->key[i]}, samples->number[i]);
-        const Vec2 point = toUniform2(numbers.position) + Vec2(samples->column[i], samples->row[i]);
-        const std::optional<PathSample> sample =
-            integrator.trace(point.x(), point.y(), numbers, counters);
-        if (!sample)
-          return false;
-        source.deliver(samples->tile[i], samples->tileSample[i], *sample);
-      }
-    } while (samples->size > 0);
-    return true;
-  }
-};
 
 /// Growth of passes, in samples per pixel.
 struct PassGrowth {
@@ -74,32 +45,6 @@ std::uint64_t chooseNoisePassSize(const LastPass& last, const RenderSettings& se
   const double limit = maxPerPixel / last.plan.at(done + 1).maxRatio();
   const auto most = static_cast<std::uint64_t>(std::max(1.0, std::min(missing, limit)));
   return std::min(choosePassSize(done - minNoiseSamples, settings), most);
-}
-
-/// Streams of a pass that are traced at the same time, and how many paths each traces together.
-struct Streams {
-  int count;
-  std::size_t maxPaths;
-};
-/// One per thread. Limits the paths, so that all threads get some and end at about the same time.
-template <typename Tracer>
-Streams planStreams(const Tracer&, const Film& film) {
-  const int threads = tbb::this_task_arena::max_concurrency();
-  return {threads,
-          std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)))};
-}
-Streams planStreams(const gpu::PathIntegrator& tracer, const Film&) {
-  return {static_cast<int>(tracer.laneCount()), std::numeric_limits<std::size_t>::max()};
-}
-
-template <typename Tracer>
-void traceStream(const Tracer& tracer, int, TileStream& stream, std::size_t maxPaths,
-                 Counters& counters) {
-  tracer.trace(stream, maxPaths, counters);
-}
-void traceStream(const gpu::PathIntegrator& tracer, int lane, TileStream& stream,
-                 std::size_t maxPaths, Counters& counters) {
-  tracer.trace(static_cast<std::size_t>(lane), stream, maxPaths, counters);
 }
 
 /// Renders the rest of a pass, until its end, a pause or a stop. Tiles are added complete or not at
@@ -333,90 +278,19 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& target, const
   return result;
 }
 
-/// A scene as the SIMD integrator and the GPU read it.
-struct SimdScene {
-  SimdScene(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop)
-      : domain(scene.volume.grid, scene.crop),
-        tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip, scene.style,
-                stop, scene.mixture),
-        shading(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
-                settings.path.wantNormals, scene.tint, scene.mixture),
-        table(domain, scene.camera),
-        cameraRays(scene.camera, cameraRayClip(scene.clip, scene.mixture), scene.lights,
-                   settings.path.background) {}
-
-  Domain domain;
-  SimdTracker tracker;
-  SimdShading shading;
-  CameraTable table;
-  CameraRays cameraRays;
-};
-
-/// Calls work(tracer, target) with the SIMD integrator.
-template <typename Work>
-auto traceSimd(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
-               Work&& work) {
-  const SimdScene simd(scene, settings, stop);
-  return work(SimdPathIntegrator(simd.tracker, simd.shading, simd.table, simd.cameraRays, stop),
-              instructionSet());
-}
-
-/// Calls work(tracer, target) with the GPU.
-template <typename Work>
-auto traceGpu(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
-              Work&& work) {
-  const std::shared_ptr<const gpu::Device> device = gpu::Device::open();
-  const SimdScene simd(scene, settings, stop);
-  const gpu::SceneTables tables(simd.tracker.medium(), simd.shading, simd.table, simd.cameraRays,
-                                settings.sampling == Sampling::stratified);
-  return work(gpu::PathIntegrator(device, simd.tracker.medium(), tables, simd.table,
-                                  simd.cameraRays, stop,
-                                  settings.laneLimits.value_or(gpu::chooseLimits(*device))),
-              device->info().target());
-}
-
-/// Calls work(tracer, target) with the scalar integrator.
-template <typename Work>
-auto traceScalar(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
-                 Work&& work) {
-  const auto scalar = [&]<typename Voxel>(const Medium<Voxel>& medium,
-                                          const Tracker<Voxel>& tracker) {
-    return work(
-        ScalarTracer<Voxel>{PathIntegrator<Voxel>(scene.volume.grid, medium, tracker, scene.lights,
-                                                  scene.camera, scene.clip, settings.path, stop)},
-        std::string("scalar"));
-  };
-  return withMedium(scene, scalar, stop);
-}
-
-bool isSimdUsed(const SceneView& scene, const RenderSettings& settings) {
-  return settings.integrator != Integrator::scalar && canUseSimd(scene);
-}
-
-/// Calls work() in an arena of as many threads as the settings allow.
-template <typename Work>
-auto inArena(const RenderSettings& settings, Work&& work) {
-  const int cores = tbb::info::default_concurrency(); // TBB warns about more
-  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
-  return arena.execute(work);
-}
-
-/// Calls work(tracer, target) with an integrator of the CPU.
-template <typename Work>
-auto traceScene(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
-                Work&& work) {
-  return inArena(settings, [&] {
-    return isSimdUsed(scene, settings) ? traceSimd(scene, settings, stop, work)
-                                       : traceScalar(scene, settings, stop, work);
-  });
-}
-
 } // namespace
 
 bool canUseSimd(const SceneView& scene) {
   return SimdTracker::isSupported(scene.volume, scene.transfer, scene.mixture) &&
          SimdShading::isSupported(scene.volume.grid, scene.transfer, scene.lights, scene.mixture) &&
          (!scene.tint || SimdLabelWeights::isSupported(*scene.tint->weights));
+}
+
+std::vector<GpuInfo> listGpus() {
+  std::vector<GpuInfo> gpus;
+  for (const gpu::DeviceInfo& device : gpu::Device::list())
+    gpus.push_back({device.target(), device.isUsed});
+  return gpus;
 }
 
 std::optional<std::string> findGpuObstacle(const SceneView& scene) {
@@ -449,6 +323,7 @@ RenderResult render(const SceneView& scene, const RenderSettings& settings, Rend
       });
     } catch (const gpu::DeviceError& error) {
       failure = error.what();
+      gpu::Device::forget();
     }
   RenderResult result =
       traceScene(scene, settings, monitor.stop, [&](const auto& tracer, const std::string& target) {

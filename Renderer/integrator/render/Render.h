@@ -138,6 +138,13 @@ struct RenderResult {
 /// True if SIMD supports the scene (SimdTracker::isSupported, SimdShading::isSupported).
 bool canUseSimd(const SceneView& scene);
 
+/// A GPU of this machine: name and driver. Software devices are used for tests only.
+struct GpuInfo {
+  std::string name;
+  bool isUsed;
+};
+std::vector<GpuInfo> listGpus();
+
 /// Why the GPU cannot render a scene; none: it can, if the device has memory enough.
 std::optional<std::string> findGpuObstacle(const SceneView& scene);
 

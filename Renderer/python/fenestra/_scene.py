@@ -152,6 +152,7 @@ class Scene:
         bounces: Optional[int] = None,
         seed: int = 0,
         threads: int = 0,
+        device: str = "cpu",
         background: Any = None,
         progress: _progress.Progress = None,
     ) -> _fenestra.Image:
@@ -166,6 +167,8 @@ class Scene:
         bounces: limit of the scatterings per path, by default none
         seed: the same seed gives the same image, bit for bit, whatever the number of threads
         threads: 0: all cores
+        device: "cpu", or "gpu": renders on a GPU where there is one for the scene, else on the CPU. The image's
+            metadata state the "target"
         background: "dark", "gray", "gradient", "transparent", "environment", a number for gray, or (r, g, b). By default
             that of a Slicer scene, else dark
         progress: True: a bar (tqdm); None: a bar in a terminal or notebook; or a function of (fraction, seconds,
