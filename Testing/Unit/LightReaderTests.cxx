@@ -214,28 +214,38 @@ TEST(LightReader, ReadsEveryPreset) {
     EXPECT_NO_THROW(parseLights(findResource(name), name)) << name;
 }
 
+/// Irradiance over pi of an area light on a plane that faces it, at the center of the volume.
+double measureIrradiance(const Light& light) {
+  const Grid grid({10, 10, 10}, Affine::Identity());
+  const LightSet set({light}, grid, Camera({}, 8, 8));
+  double sum = 0.0;
+  constexpr int n = 64; // n x n points on the light
+  for (int k = 0; k < n * n; ++k) {
+    const Vec2 u((k % n + 0.5) / n, (k / n + 0.5) / n);
+    const auto sample = set.sample(grid.worldCenter(), 0.0, u);
+    const double cosine = -set.tables().areas.at(0).normal.dot(sample->direction);
+    sum += luminance(sample->radiance) * cosine / (sample->pdf * pi * n * n);
+  }
+  return sum;
+}
+
 TEST(LightReader, KeyLightOfCinemaIsAboutFourTimesItsFillAndSkyTogether) {
   const auto lights = parseLights(findResource("lights/cinema.json"), "cinema");
   ASSERT_EQ(lights.size(), 4u);
-  const Grid grid({10, 10, 10}, Affine::Identity());
-  const Camera camera({}, 8, 8);
-  const auto measureIrradiance =
-      [&](std::size_t i) { // irradiance over pi on a plane that faces the light
-        const LightSet set({lights[i]}, grid, camera);
-        double sum = 0.0;
-        constexpr int n = 64; // n x n points on the light
-        for (int k = 0; k < n * n; ++k) {
-          const Vec2 u((k % n + 0.5) / n, (k / n + 0.5) / n);
-          const auto sample = set.sample(grid.worldCenter(), 0.0, u);
-          const double cosine = -set.tables().areas.at(0).normal.dot(sample->direction);
-          sum += luminance(sample->radiance) * cosine / (sample->pdf * pi * n * n);
-        }
-        return sum;
-      };
-  EXPECT_NEAR(measureIrradiance(0), 1.48, 0.01);
-  EXPECT_NEAR(measureIrradiance(1), 0.17, 0.003);
+  EXPECT_NEAR(measureIrradiance(lights[0]), 1.48, 0.01);
+  EXPECT_NEAR(measureIrradiance(lights[1]), 0.17, 0.003);
   const auto& sky = std::get<SkyLight>(lights[3]);
   EXPECT_NEAR(luminance((sky.top + 2.0 * sky.middle + sky.bottom) / 4.0), 0.17, 0.003) << "mean";
+}
+
+/// With more light from the small lamps, highlights cover over 4 % of smooth organs (A6).
+TEST(LightReader, HighlightLampsOfTheatreWetAreWeakerThanItsKeyLight) {
+  const auto lights = parseLights(findResource("lights/theatre-wet.json"), "theatre-wet");
+  ASSERT_EQ(lights.size(), 6u);
+  const double key = measureIrradiance(lights[0]);
+  const double lamps = measureIrradiance(lights[2]) + measureIrradiance(lights[3]);
+  EXPECT_GT(lamps, 0.8 * key);
+  EXPECT_LT(lamps, 0.9 * key);
 }
 
 TEST(LightReader, ReadsLightsOfTheReference) {

@@ -218,27 +218,31 @@ Mask makeBoxesBehindEachOther(int extra) {
   return mask;
 }
 
+/// In slots of half a voxel are some samples per row of pixels, or only one.
 TEST(SilhouetteCells, NarrowSlotsAlongTheOutlineAreClosed) {
-  constexpr double near = 190.0, far = 215.0; // mm
-  for (const int extra : {0, 6}) {
-    const Mask focus = makeBoxesBehindEachOther(extra);
-    const ClippingSurface surface =
-        buildClippingSurface(makeAnteriorCamera(Projection::orthographic, 200.0, 12.0, 120, 120),
-                             Domain(focus.grid), focus, {.boundary = Boundary::exact});
-    const auto& clip = std::get<ClipDepth>(surface.clip);
-    for (double x = -8.0; x < 8.0; x += 0.7) {
-      EXPECT_NEAR(clip.surfaceDepth(Vec2(x, 8.0)), near, 1e-3);
-      EXPECT_NEAR(clip.surfaceDepth(Vec2(x, 10.7)), extra > 0 ? far : near,
-                  extra > 0 ? 1e-3 : 2.0) // the slope of the near box continues
-          << "between the upper faces, at 10.4 and 10.9";
+  constexpr double near = 190.0, far = 215.0, halfHeight = 12.0; // mm
+  for (const int pixels : {120, 40})
+    for (const int extra : {0, 6}) {
+      SCOPED_TRACE(::testing::Message() << pixels << " pixels, extra " << extra);
+      const Mask focus = makeBoxesBehindEachOther(extra);
+      const ClippingSurface surface = buildClippingSurface(
+          makeAnteriorCamera(Projection::orthographic, 200.0, halfHeight, pixels, pixels),
+          Domain(focus.grid), focus, {.boundary = Boundary::exact});
+      const auto& clip = std::get<ClipDepth>(surface.clip);
+      for (double x = -8.0; x < 8.0; x += 0.7) {
+        EXPECT_NEAR(clip.surfaceDepth(Vec2(x, 8.0)), near, 1e-3);
+        EXPECT_NEAR(clip.surfaceDepth(Vec2(x, 10.7)), extra > 0 ? far : near,
+                    extra > 0 ? 1e-3 : 2.0) // the slope of the near box continues
+            << "between the upper faces, at 10.4 and 10.9";
+      }
+      const auto countFocus = [](const FocusDepth& focus) {
+        return static_cast<double>(std::ranges::count(focus.regions, Region::focus));
+      };
+      const double pitch = 2.0 * halfHeight / pixels;
+      const double closed = pitch * pitch * (countFocus(surface.focus) - countFocus(surface.shown));
+      EXPECT_GE(closed, extra > 0 ? 0.0 : 4.0) << "mm^2";
+      EXPECT_LE(closed, extra > 0 ? 1.6 : 24.0) << "mm^2, beside the step of the outline";
     }
-    const auto countFocus = [](const FocusDepth& focus) {
-      return std::ranges::count(focus.regions, Region::focus);
-    };
-    const auto closed = countFocus(surface.focus) - countFocus(surface.shown);
-    EXPECT_GE(closed, extra > 0 ? 0 : 100);
-    EXPECT_LE(closed, extra > 0 ? 40 : 600) << "beside the step of the outline";
-  }
 }
 
 TEST(SilhouetteCells, ClipWeightEqualsThatOfTheFullSurface) {

@@ -251,34 +251,37 @@ double SilhouetteCells::voxelEdge() const {
 }
 
 /// Around each halo sample: the focus samples that are nearer to it than any focus at its depth, up
-/// to a voxel more. There must be such focus within `widest`: else the focus is not only a strip.
+/// to a voxel more. There must be such focus within `reach`: else the focus is not only a strip. A
+/// strip of one sample is always within reach: where pixels are as large as voxels, slots have no
+/// more.
 SilhouetteCells::Slots SilhouetteCells::findSlots(const FocusDepth& focus) const {
   const DepthBuffer& buffer = focus.depth;
   const double tolerance = voxelEdge(), widest = std::min(voxelEdge(), 2.0); // mm
   constexpr double mostSamples = 48.0; // bounds the time in close views
-  const auto radius =
-      static_cast<std::int64_t>(std::min(widest / std::abs(buffer.xAxis().pitch), mostSamples));
+  const double reach =
+      std::clamp(widest / std::abs(buffer.xAxis().pitch), 2.0, mostSamples); // samples
+  const auto radius = static_cast<std::int64_t>(reach);
   Slots slots;
   std::vector<std::pair<std::int64_t, std::int64_t>> farther; // squared distance and sample
   for (const HaloSample& halo : m_halo) {
     const std::int64_t column = halo.sample % buffer.columns(),
                        row = halo.sample / buffer.columns();
     const double limit = halo.depth + tolerance;
-    std::int64_t nearest = radius * radius + 1; // squared distance of focus at the halo's depth
+    std::int64_t nearest = 0; // squared distance of focus at the halo's depth; 0: none
     farther.clear();
     for (std::int64_t y = -radius; y <= radius; ++y)
       for (std::int64_t x = -radius; x <= radius; ++x) {
-        if (!focus.isFocus(column + x, row + y))
+        const std::int64_t distance = x * x + y * y;
+        if (static_cast<double>(distance) > reach * reach || !focus.isFocus(column + x, row + y))
           continue;
         const std::int64_t sample = buffer.sample(column + x, row + y);
-        const std::int64_t distance = x * x + y * y;
         if (buffer.at(sample) > limit)
           farther.emplace_back(distance, sample);
-        else
-          nearest = std::min(nearest, distance);
+        else if (nearest == 0 || distance < nearest)
+          nearest = distance;
       }
     for (const auto& [distance, sample] : farther)
-      if (distance < nearest && nearest <= radius * radius)
+      if (distance < nearest)
         if (double& least = slots.try_emplace(sample, limit).first->second; limit < least)
           least = limit;
   }

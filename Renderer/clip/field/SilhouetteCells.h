@@ -21,10 +21,10 @@
 //         silhouette    |                        1/4 - -/- - -\- - -   captureThreshold
 //      filled surface   | exact                     ___/       \____
 //
-// A slot is a strip of the focus along its outline, narrower than a voxel, that lies farther away
-// than both the focus beside it and the surface at its outline: the rim of a farther part of the
-// focus behind a nearer one. As a part of the outline it would be a dark, deep groove. Slots are
-// closed: they count as context, and no part of the focus beyond them as a hit.
+// A slot is a strip of the focus along its outline, narrower than a voxel or one sample wide, that
+// lies farther away than both the focus beside it and the surface at its outline: the rim of a
+// farther part of the focus behind a nearer one. As a part of the outline it would be a dark, deep
+// groove. Slots are closed: they count as context, and no part of the focus beyond them as a hit.
 //
 // The depth bounds of a cell contain all depths at which its rays can hit the focus; points outside
 // them need no query. In an inner cell, where all samples are focus, they are the depth range of
