@@ -53,7 +53,7 @@ build_packages=(
   g++ cmake ninja-build pkg-config
   libinsighttoolkit5-dev libeigen3-dev libhwy-dev libopenexr-dev libopencolorio-dev libtbb-dev
   nlohmann-json3-dev libpugixml-dev libzip-dev libgtest-dev libpng-dev libtiff-dev
-  libfreetype-dev fonts-dejavu-core zlib1g-dev)
+  libfreetype-dev fonts-dejavu-core zlib1g-dev glslc spirv-tools libvulkan-dev libvulkan-volk-dev)
 
 # build PRESET [cmake arguments]: configures and builds in the preset's folder.
 build() {

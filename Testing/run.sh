@@ -30,7 +30,7 @@ run_tests() {
 stage "install packages" 60 install_packages "${build_packages[@]}" libgmock-dev libboost-dev \
   qtbase5-dev pybind11-dev python3-dev python3-pytest python3-nibabel python3-pip python3-wheel jupyter-nbconvert \
   python3-ipykernel ${sanitizers:+clang libclang-rt-14-dev} lld patchelf busybox-static jq mandoc zsh fish \
-  glslc
+  mesa-vulkan-drivers vulkan-validationlayers
 stage "build (release)" 230 build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=OFF \
   -DFENESTRA_LONG_TESTS="${sanitizers:-OFF}" \
   ${Slicer_DIR:+"-DSlicer_DIR=$Slicer_DIR"}

@@ -1,27 +1,13 @@
 #pragma once
 // Scenes for tests of the GPU, and comparisons of its films.
 
+#include "Gpu/DeviceTesting.h"
 #include "Gpu/Twin.h"
 #include "Statistical/Matrix.h"
 #include "Unit/FilmTesting.h"
-#include "integrator/gpu/Device.h"
-
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 namespace fenestra::core::testing {
-
-/// Why no device can be opened; empty: one can. Admits software devices.
-inline std::string findDeviceObstacle() {
-  setenv("FENESTRA_GPU", "software", 1);
-  try {
-    gpu::Device::open();
-  } catch (const gpu::DeviceError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 /// Skips each test where no device can be opened.
 class GpuTest : public ::testing::Test {
@@ -31,11 +17,6 @@ protected:
       GTEST_SKIP() << obstacle;
   }
 };
-
-/// RenderResult::target of the device.
-inline std::string findDeviceTarget() {
-  return gpu::Device::open()->info().target();
-}
 
 inline RenderResult renderOnGpu(const TestScene& scene, RenderSettings settings) {
   settings.integrator = Integrator::gpu;

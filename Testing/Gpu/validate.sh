@@ -4,11 +4,12 @@
 set -euo pipefail
 tests=$1 filter=$2
 layer=VK_LAYER_KHRONOS_validation
+between=VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT # also between submissions
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 status=0
 VK_LOADER_DEBUG=layer VK_INSTANCE_LAYERS=$layer \
-  VK_LAYER_ENABLES=VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT \
+  VK_LAYER_ENABLES="VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT,$between" \
   "$tests" "--gtest_filter=$filter" >"$log" 2>&1 || status=$?
 if ! grep -qi "insert instance layer.*$layer" "$log"; then
   echo "SKIPPED: no $layer; install vulkan-validationlayers"
