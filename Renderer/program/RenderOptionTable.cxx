@@ -299,12 +299,11 @@ struct RenderOptionTable {
                                              {"independent", Sampling::independent}})
            .withAliases({{"strata", "stratified"}})},
       {"device", "KIND", qualityGroup,
-       "Renders on the cpu, on the gpu, or auto: on the GPU if a device and the scene allow it; "
-       "list: lists the GPUs of this machine",
+       "Renders on the cpu, on the gpu, or auto: on the GPU where a device and the scene allow it; "
+       "list prints the GPUs of this machine",
        ValueSpec::choice(options.device, {{"cpu", DeviceChoice::cpu},
                                           {"gpu", DeviceChoice::gpu},
-                                          {"auto", DeviceChoice::automatic},
-                                          {"list", DeviceChoice::list}}),
+                                          {"auto", DeviceChoice::automatic}}),
        OverrideGroup::process},
       {OptionNames("threads", 'j'), "K", qualityGroup,
        "Number of threads, at most one per core; 0: all cores",

@@ -16,8 +16,8 @@ enum class Denoise { automatic, on, off };
 enum class NoiseTarget { automatic, raw, denoised };
 
 /// What renders: automatic, the GPU if a device and the scene allow it, else the CPU; gpu, the same
-/// with a warning; list, lists the GPUs instead of rendering.
-enum class DeviceChoice { cpu, gpu, automatic, list };
+/// with a warning.
+enum class DeviceChoice { cpu, gpu, automatic };
 
 enum class ProgressMode { automatic, bar, xml, none };
 
