@@ -9,7 +9,7 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 status=0
 VK_LOADER_DEBUG=layer VK_INSTANCE_LAYERS=$layer \
-  VK_LAYER_ENABLES="VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT,$between" \
+  VK_LAYER_ENABLES="VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT:$between" \
   "$tests" "--gtest_filter=$filter" >"$log" 2>&1 || status=$?
 if ! grep -qi "insert instance layer.*$layer" "$log"; then
   echo "SKIPPED: no $layer; install vulkan-validationlayers"

@@ -2,6 +2,7 @@
 // are parsed like those of `fenestra render`.
 
 #include "EstimateImages.h"
+#include "Gpu/DeviceTesting.h"
 #include "Gpu/Twin.h"
 #include "Oracle/Oracle.h"
 #include "RunSettings.h"
@@ -171,6 +172,30 @@ TEST_P(TwinReference, ImageAgreesWithinErrors) {
 INSTANTIATE_TEST_SUITE_P(Scenes, TwinReference,
                          ::testing::Values(ReferenceCase{"S1", isLongRun() ? 128U : 8U},
                                            ReferenceCase{"S2", isLongRun() ? 128U : 8U}));
+
+class GpuReference : public ::testing::TestWithParam<ReferenceCase> {};
+
+TEST_P(GpuReference, ImageAgreesWithinErrors) {
+  if (!hasReferences())
+    GTEST_SKIP() << "no reference images at " << FENESTRA_REFERENCE;
+  if (const std::string obstacle = findDeviceObstacle(); !obstacle.empty())
+    GTEST_SKIP() << obstacle;
+  const ReferenceCase& c = GetParam();
+  const RenderOptions options = readArguments(c);
+  const PreparedScene scene(options.scene);
+  RenderSettings settings = makeSettings(options, scene.background());
+  settings.seed = 45;
+  settings.integrator = Integrator::gpu;
+  RenderMonitor monitor;
+  const RenderResult result = render(scene.view(), settings, monitor);
+  EXPECT_EQ(result.target, findDeviceTarget());
+  expectAgreement(makeImage(result.film, scene.camera(), scene.clip(), options.layers), c,
+                  isLongRun() ? Bounds{4, 0.07, 0.05} : Bounds{16, 0.3, 0.2});
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, GpuReference,
+                         ::testing::Values(ReferenceCase{"S1", isLongRun() ? 128U : 4U},
+                                           ReferenceCase{"S2", isLongRun() ? 128U : 4U}));
 
 /// Albedo 1 in an environment of 1: every path of the oracle returns 1.
 TEST(OracleReferenceFurnace, EveryPixelOfS3hetIsOne) {
