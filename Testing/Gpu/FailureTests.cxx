@@ -120,8 +120,36 @@ TEST_F(GpuFailure, OfALostDeviceGivesTheCpuImage) {
     expectFallback<LostAtWait>(first, "waiting for the device failed");
 }
 
-TEST_F(GpuFailure, OfADeviceThatIsLostAfterTheChoiceGivesTheCpuImage) {
-  expectFallback<NoDevice>(2, "opening the device failed");
+/// A driver that compiles the shader wrongly: it ignores the constants of the scene.
+class WrongShader {
+public:
+  WrongShader() : m_original(vkCreateComputePipelines) {
+    original = m_original;
+    vkCreateComputePipelines = create;
+  }
+  ~WrongShader() { vkCreateComputePipelines = m_original; }
+  WrongShader(const WrongShader&) = delete;
+  WrongShader& operator=(const WrongShader&) = delete;
+
+private:
+  static VKAPI_ATTR VkResult VKAPI_CALL create(VkDevice device, VkPipelineCache,
+                                               std::uint32_t count,
+                                               const VkComputePipelineCreateInfo* info,
+                                               const VkAllocationCallbacks* callbacks,
+                                               VkPipeline* pipelines) {
+    VkComputePipelineCreateInfo changed = *info;
+    changed.stage.pSpecializationInfo = nullptr;
+    return original(device, VK_NULL_HANDLE, count, &changed, callbacks, pipelines);
+  }
+  static inline PFN_vkCreateComputePipelines original = nullptr;
+  PFN_vkCreateComputePipelines m_original;
+};
+
+TEST_F(GpuFailure, OfTheShaderGivesTheCpuImage) {
+  const WrongShader wrong;
+  const RenderResult result = render(Integrator::gpu);
+  EXPECT_EQ(result.gpuFailure, "its results differ from those of the CPU");
+  expectCpuImage(result);
 }
 
 TEST_F(GpuFailure, OfAResumedRenderGivesTheCpuImage) {
@@ -135,6 +163,7 @@ TEST_F(GpuFailure, OfAResumedRenderGivesTheCpuImage) {
 }
 
 TEST_F(GpuFailure, ToOpenADeviceGivesTheCpuImage) {
+  gpu::Device::forget();
   const NoDevice failing(1);
   const RenderResult result = render(Integrator::gpu);
   EXPECT_EQ(result.gpuFailure, ""); // known before the render

@@ -3,6 +3,7 @@
 
 #include "base/InstructionSets.h"
 #include "integrator/gpu/PathIntegrator.h"
+#include "integrator/render/DeviceCheck.h"
 #include "integrator/render/Render.h"
 #include "integrator/render/TileStream.h"
 #include "integrator/scalar/PathIntegrator.h"
@@ -98,10 +99,13 @@ auto traceGpu(const SceneView& scene, const RenderSettings& settings, const Stop
   const SimdScene simd(scene, settings, stop);
   const gpu::SceneTables tables(simd.tracker.medium(), simd.shading, simd.table, simd.cameraRays,
                                 settings.sampling == Sampling::stratified);
-  return work(gpu::PathIntegrator(device, simd.tracker.medium(), tables, simd.table,
-                                  simd.cameraRays, stop,
-                                  settings.laneLimits.value_or(gpu::chooseLimits(*device))),
-              device->info().target());
+  const gpu::PathIntegrator integrator(device, simd.tracker.medium(), tables, simd.table,
+                                       simd.cameraRays, stop,
+                                       settings.laneLimits.value_or(gpu::chooseLimits(*device)));
+  checkDevice(integrator,
+              SimdPathIntegrator(simd.tracker, simd.shading, simd.table, simd.cameraRays, stop),
+              scene.camera, Sampler(settings.sampling, settings.seed));
+  return work(integrator, device->info().target());
 }
 
 /// Calls work(tracer, target) with the scalar integrator.
