@@ -6,7 +6,7 @@ namespace fenestra::core::gpu {
 namespace {
 
 constexpr std::uint32_t shader[] = {
-#include "PathTracer.inc"
+#include "integrator/gpu/PathTracer.inc"
 };
 
 VoxelImage makeVoxels(const Device& device, const SimdField& field, std::size_t bytes) {
