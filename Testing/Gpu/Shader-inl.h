@@ -57,6 +57,8 @@ inline Float floor(Float x) {
 #include "formulas/Paths.inl"
 #include "formulas/Tracking.inl"
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wsign-conversion" // GLSL indexes by int
 #pragma push_macro("CONSTANT")
 #undef CONSTANT
 #define CONSTANT static constexpr
@@ -131,6 +133,7 @@ private:
 };
 
 #pragma pop_macro("CONSTANT")
+#pragma GCC diagnostic pop
 
 } // namespace device
 
