@@ -15,7 +15,9 @@ std::size_t chooseLaneCount(const Device& device) {
 LaneLimits chooseLimits(const Device& device) {
   if (device.isSoftware())
     return {.threads = 1024, .paths = std::size_t{1} << 13};
-  return {.threads = 1U << 16, .paths = std::size_t{1} << 18};
+  // All lanes together keep half a million threads busy.
+  const std::uint32_t threads = (1U << 19) / static_cast<std::uint32_t>(chooseLaneCount(device));
+  return {.threads = threads / 64 * 64, .paths = std::size_t{2} * threads};
 }
 
 PathIntegrator::PathIntegrator(std::shared_ptr<const Device> device, const SimdMedium& medium,

@@ -49,8 +49,10 @@ Streams planStreams(const Tracer&, const Film& film) {
   return {threads,
           std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)))};
 }
-inline Streams planStreams(const gpu::PathIntegrator& tracer, const Film&) {
-  return {static_cast<int>(tracer.laneCount()), std::numeric_limits<std::size_t>::max()};
+inline Streams planStreams(const gpu::PathIntegrator& tracer, const Film& film) {
+  constexpr std::size_t least = std::size_t{1} << 14; // fewer leave a GPU idle
+  return {static_cast<int>(tracer.laneCount()),
+          std::max(least, film.pixelCount() / tracer.laneCount())};
 }
 
 template <typename Tracer>
