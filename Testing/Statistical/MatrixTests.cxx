@@ -116,7 +116,7 @@ TEST(GpuMatrix, AgreesWithOracle) {
   if (const std::string obstacle = findDeviceObstacle(); !obstacle.empty())
     GTEST_SKIP() << obstacle;
   const std::size_t count = isLongRun() ? 120 : 30;
-  const std::vector<Combination> all = findGpuCombinations(count, isLongRun() ? 1 : 5);
+  const std::vector<Combination> all = findGpuCombinations(count, isLongRun() ? 1 : 10);
   ASSERT_EQ(all.size(), count);
   testCombinations(all, {isLongRun() ? 512U : 64U, seedBase(), Integrator::gpu});
 }

@@ -194,8 +194,8 @@ TEST_P(GpuReference, ImageAgreesWithinErrors) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, GpuReference,
-                         ::testing::Values(ReferenceCase{"S1", isLongRun() ? 128U : 4U},
-                                           ReferenceCase{"S2", isLongRun() ? 128U : 4U}));
+                         ::testing::Values(ReferenceCase{"S1", isLongRun() ? 128U : 2U},
+                                           ReferenceCase{"S2", isLongRun() ? 128U : 2U}));
 
 /// Albedo 1 in an environment of 1: every path of the oracle returns 1.
 TEST(OracleReferenceFurnace, EveryPixelOfS3hetIsOne) {
