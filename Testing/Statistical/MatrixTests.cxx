@@ -95,15 +95,13 @@ Combination shareConstants(const Combination& c, const Combination& like) {
 
 /// The first combinations that the device renders; `perPipeline` successive ones share constants.
 std::vector<Combination> findGpuCombinations(std::size_t count, std::size_t perPipeline) {
-  RenderSettings settings;
-  settings.integrator = Integrator::gpu;
   const std::vector<Combination> all = makeCombinations(longCount);
   std::vector<Combination> found;
   for (std::size_t i = 0; i < all.size() && found.size() < count; ++i) {
     const Combination c = shareConstants(all[i], all[i - i % perPipeline + perPipeline - 1]);
     const MatrixScene scene = makeMatrixScene(c);
     const std::optional<std::string> obstacle = scene.fenestra.visitView(
-        [&](const SceneView& view) { return findGpuObstacle(view, settings); });
+        [&](const SceneView& view) { return findGpuObstacle(view); });
     if (obstacle)
       std::cout << "not on the GPU: " << c.index << ", " << *obstacle << '\n';
     else
