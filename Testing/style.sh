@@ -21,6 +21,7 @@ say "clang-tidy"
 # instruction sets, so one set is enough.
 cmake --preset release -B build/style -DFENESTRA_BUILD_TESTS=OFF -DCMAKE_UNITY_BUILD=ON \
   -DCMAKE_UNITY_BUILD_BATCH_SIZE=0 -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
+cmake --build build/style --target fenestra_shader >/dev/null
 sed -n 's/^ *"file": "\(.*Renderer.*\)",*$/\1/p' build/style/compile_commands.json | grep -vE '/(Commit|ReaderBuild).cxx' |
   xargs -P "$(nproc)" -n 1 clang-tidy -p build/style --quiet \
     --extra-arg=-DHWY_COMPILE_ONLY_STATIC 2>/dev/null ||
