@@ -34,6 +34,15 @@ def test_arrays_are_views_that_keep_the_image_alive(reference):
     assert plain.denoised is None and plain.clip_depth is None and plain.denoised_noise == float("inf")
 
 
+def test_device(reference):
+    image = make_scene().render(device="gpu", **FEW)
+    if image.metadata["target"] == reference.metadata["target"]:  # no GPU
+        assert numpy.array_equal(image.rgba, reference.rgba)
+    assert image.complete and image.samples == reference.samples
+    with pytest.raises(ValueError, match="device"):
+        make_scene().render(device="tpu", **FEW)
+
+
 def test_display_png_and_files(reference, tmp_path):
     pixels = reference.display()
     assert (pixels.shape, pixels.dtype) == ((40, 48, 4), numpy.uint8)
