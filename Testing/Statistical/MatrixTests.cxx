@@ -100,8 +100,8 @@ std::vector<Combination> findGpuCombinations(std::size_t count, std::size_t perP
   for (std::size_t i = 0; i < all.size() && found.size() < count; ++i) {
     const Combination c = shareConstants(all[i], all[i - i % perPipeline + perPipeline - 1]);
     const MatrixScene scene = makeMatrixScene(c);
-    const std::optional<std::string> obstacle = scene.fenestra.visitView(
-        [&](const SceneView& view) { return findGpuObstacle(view); });
+    const std::optional<std::string> obstacle =
+        scene.fenestra.visitView([&](const SceneView& view) { return findGpuObstacle(view); });
     if (obstacle)
       std::cout << "not on the GPU: " << c.index << ", " << *obstacle << '\n';
     else
