@@ -26,8 +26,8 @@ protected:
 
   /// Statistics of a render, which must succeed. `errors` receives standard error.
   nlohmann::json render(Arguments arguments, const std::string& device, std::string& errors) {
-    const Arguments more = {"--device",           device,          "--samples",    "1",
-                            "--volume-smoothing", "off",           "--size",       "24x24",
+    const Arguments more = {"--device",           device,          "--samples",    "2",
+                            "--volume-smoothing", "off",           "--size",       "48x48",
                             "--output",           device + ".exr", "--stats-json", "stats.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = run(arguments, folder.path());
@@ -36,7 +36,7 @@ protected:
     return nlohmann::json::parse(readBytes(folder / "stats.json"));
   }
 
-  /// Expects that the software device renders, without a word about the CPU.
+  /// Expects that the software device renders the same image twice, without a word about the CPU.
   void expectOnDevice(const Arguments& arguments) {
     setenv("FENESTRA_GPU", "software", 1);
     if (!hasUsedDevice())
@@ -45,6 +45,11 @@ protected:
     const nlohmann::json stats = render(arguments, "gpu", errors);
     EXPECT_EQ(listDevices(), stats["target"].get<std::string>() + "\n");
     EXPECT_EQ(errors.find("CPU"), std::string::npos) << errors;
+    const Image first = readImage(folder / "gpu.exr");
+    render(arguments, "gpu", errors);
+    const Image again = readImage(folder / "gpu.exr");
+    for (const auto& [name, plane] : first.channels)
+      EXPECT_EQ(again.channels.at(name), plane) << name;
   }
 
   TemporaryFolder folder;

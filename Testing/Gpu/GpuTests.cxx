@@ -59,7 +59,7 @@ TEST_F(GpuSlicing, ChangesNoBit) {
   const RenderResult once = renderOnGpu(s.scene, s.settings);
   constexpr Slicing slicings[] = {{{.threads = 64, .paths = 100, .maxSteps = 1}, 4},
                                   {{.threads = 128, .paths = 64, .maxSteps = 7}, 1},
-                                  {{.threads = 64, .paths = 1024, .maxSteps = 65536}, 3},
+                                  {{.threads = 64, .paths = 1024, .maxSteps = 64}, 3},
                                   {{.threads = 1024, .paths = 333, .maxSteps = 40}, 4}};
   for (const auto& [limits, passSamples] : slicings) {
     RenderSettings settings = s.settings;

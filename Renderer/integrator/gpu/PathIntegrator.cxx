@@ -13,8 +13,10 @@ std::size_t chooseLaneCount(const Device& device) {
 } // namespace
 
 LaneLimits chooseLimits(const Device& device) {
+  // Mesa's software device ends all loops of a dispatch after 65,535 iterations in total, and a
+  // step through an exact surface takes hundreds.
   if (device.isSoftware())
-    return {.threads = 1024, .paths = std::size_t{1} << 13};
+    return {.threads = 1024, .paths = std::size_t{1} << 13, .maxSteps = 16};
   // All lanes together keep half a million threads busy.
   const std::uint32_t threads = (1U << 19) / static_cast<std::uint32_t>(chooseLaneCount(device));
   return {.threads = threads / 64 * 64, .paths = std::size_t{2} * threads};
