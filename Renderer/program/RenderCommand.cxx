@@ -303,7 +303,7 @@ RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene
   RenderSettings settings = makeSettings(options, scene.background());
   if (options.device == DeviceChoice::gpu)
     if (const auto obstacle = findGpuObstacle(scene.view()))
-      warn({"the CPU renders: " + *obstacle});
+      warn({concat("--device gpu: ", *obstacle, "; the CPU renders")});
   std::optional<RenderResult> begun;
   if (checkpoint) {
     begun = checkpoint->load(scene, settings);
@@ -360,7 +360,8 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   stats.write = watch.lap();
   stats.warnings = findStaleFiles(options, outputs);
   if (!result.gpuFailure.empty())
-    stats.warnings.push_back("the CPU rendered, since the GPU failed: " + result.gpuFailure);
+    stats.warnings.push_back(
+        concat("--device: the GPU failed: ", result.gpuFailure, "; the CPU rendered"));
   warn(stats.warnings);
 
   writeStats(options, scene, result, total, monitor, stats, outputs);

@@ -1,9 +1,7 @@
 #include "Gpu/Twin.h"
 
 #include "base/Formulas.h"
-#include "base/Narrow.h"
-#include "integrator/gpu/PathIntegrator.h"
-#include "integrator/render/EmptyPixels.h"
+#include "integrator/render/Tracing.h"
 
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
@@ -18,27 +16,14 @@ namespace {
 using namespace gpu;
 #include "Gpu/Shader-inl.h"
 
-/// Pixels that need only one sample.
-EmptyPixels findEmptyPixels(const SceneView& scene, const Background& background) {
-  const bool isConstant = background.kind != Background::Kind::environment ||
-                          (!scene.lights.hasMaps() && scene.lights.tables().skies.empty());
-  return isConstant ? EmptyPixels(scene.camera, scene.majorants) : EmptyPixels();
-}
-
 class Renderer {
 public:
   Renderer(const SceneView& scene, const RenderSettings& settings)
-      : m_domain(scene.volume.grid, scene.crop),
-        m_tracker(scene.volume, m_domain, scene.transfer, scene.majorants, scene.clip, scene.style,
-                  neverStopped, scene.mixture),
-        m_shading(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
-                  settings.path.wantNormals, scene.tint, scene.mixture),
-        m_table(m_domain, scene.camera),
-        m_cameraRays(scene.camera, cameraRayClip(scene.clip, scene.mixture), scene.lights,
-                     settings.path.background),
+      : m_scene(scene, settings, neverStopped),
         m_sampler(settings.sampling, settings.seed),
-        m_empty(findEmptyPixels(scene, settings.path.background)),
-        m_tables(m_tracker.medium(), m_shading, m_table, m_cameraRays, m_sampler.isStratified()) {
+        m_empty(findEmptyPixels(scene, settings)),
+        m_tables(m_scene.tracker.medium(), m_scene.shading, m_scene.table, m_scene.cameraRays,
+                 m_sampler.isStratified()) {
     if (!canUseSimd(scene))
       throw std::invalid_argument("the scene needs double precision");
   }
@@ -56,7 +41,7 @@ public:
 
 private:
   Counters renderRow(Film& film, int row, std::uint64_t samples) const {
-    device::Shader shader(m_tables, m_tracker.medium());
+    device::Shader shader(m_tables, m_scene.tracker.medium());
     Counters counters;
     for (int column = 0; column < film.width(); ++column) {
       PixelSums& pixel = film.at(column, row);
@@ -85,22 +70,18 @@ private:
     };
     if (result.scatterings == 0.0F)
       return result.depth == infiniteReal
-                 ? m_cameraRays.sampleBackground(row, triple(result.normal).matrix())
+                 ? m_scene.cameraRays.sampleBackground(row, triple(result.normal).matrix())
                  : PathSample{};
     PathSample sample;
     sample.radiance = triple(result.radiance);
-    sample.depth = m_table.nearDepth + double{result.depth};
+    sample.depth = m_scene.table.nearDepth + double{result.depth};
     sample.albedo = triple(result.albedo);
     sample.normal = triple(result.normal).matrix();
     sample.scatterings = double{result.scatterings};
     return sample;
   }
 
-  Domain m_domain;
-  SimdTracker m_tracker;
-  SimdShading m_shading;
-  CameraTable m_table;
-  CameraRays m_cameraRays;
+  SimdScene m_scene;
   Sampler m_sampler;
   EmptyPixels m_empty;
   SceneTables m_tables;

@@ -95,7 +95,7 @@ std::uint32_t findFamily(const std::vector<VkQueueFamilyProperties>& families) {
   return best;
 }
 
-constexpr VkImageSubresourceRange wholeImage = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+constexpr VkImageSubresourceRange fullImage = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
 
 void changeLayout(VkCommandBuffer commands, VkImage image, VkAccessFlags before, VkImageLayout from,
                   VkAccessFlags after, VkImageLayout to) {
@@ -107,7 +107,7 @@ void changeLayout(VkCommandBuffer commands, VkImage image, VkAccessFlags before,
                                         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                                         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                                         .image = image,
-                                        .subresourceRange = wholeImage};
+                                        .subresourceRange = fullImage};
   vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
                        VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
 }
@@ -251,7 +251,7 @@ Buffer Device::makeBuffer(const void* content, VkDeviceSize size) const {
   Buffer buffer = makeBuffer(size, Memory::device);
   const Buffer staging = makeBuffer(size, Memory::upload);
   std::memcpy(staging.mapped, content, size);
-  runOnce([&](VkCommandBuffer commands) {
+  Commands(*this).run(0, [&](VkCommandBuffer commands) {
     const VkBufferCopy all = {.size = staging.size};
     vkCmdCopyBuffer(commands, staging.get(), buffer.get(), 1, &all);
   });
@@ -292,7 +292,7 @@ VoxelImage Device::makeVoxels(const void* content, const VkExtent3D& extent,
                                           .image = image.get(),
                                           .viewType = VK_IMAGE_VIEW_TYPE_3D,
                                           .format = format,
-                                          .subresourceRange = wholeImage};
+                                          .subresourceRange = fullImage};
   VkImageView view = VK_NULL_HANDLE;
   check(vkCreateImageView(m_device, &viewInfo, nullptr, &view), "viewing the volume");
   made.image = std::move(image);
@@ -308,10 +308,11 @@ void Device::copyVoxels(const void* content, const VkExtent3D& extent, std::uint
   const auto slices =
       static_cast<std::uint32_t>(std::clamp<VkDeviceSize>(maxStaging / slice, 1, extent.depth));
   const Buffer staging = makeBuffer(slice * slices, Memory::upload);
+  const Commands once(*this);
   for (std::uint32_t z = 0; z < extent.depth; z += slices) {
     const std::uint32_t count = std::min(slices, extent.depth - z);
     std::memcpy(staging.mapped, static_cast<const std::byte*>(content) + z * slice, count * slice);
-    runOnce([&](VkCommandBuffer commands) {
+    once.run(0, [&](VkCommandBuffer commands) {
       if (z == 0)
         changeLayout(commands, image, 0, VK_IMAGE_LAYOUT_UNDEFINED, VK_ACCESS_TRANSFER_WRITE_BIT,
                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
@@ -328,37 +329,45 @@ void Device::copyVoxels(const void* content, const VkExtent3D& extent, std::uint
   }
 }
 
-template <typename Record>
-void Device::runOnce(Record&& record) const {
-  const VkCommandPoolCreateInfo poolInfo = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                            .queueFamilyIndex = m_family};
-  VkCommandPool pool = VK_NULL_HANDLE;
-  check(vkCreateCommandPool(m_device, &poolInfo, nullptr, &pool), "creating commands");
-  const Owned<VkCommandPool> ownedPool(m_device, pool, vkDestroyCommandPool);
-  const VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                            .commandPool = pool,
-                                            .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                            .commandBufferCount = 1};
-  VkCommandBuffer commands = VK_NULL_HANDLE;
-  check(vkAllocateCommandBuffers(m_device, &info, &commands), "creating commands");
-  const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  check(vkBeginCommandBuffer(commands, &begin), "recording commands");
-  record(commands);
-  check(vkEndCommandBuffer(commands), "recording commands");
-  const VkFenceCreateInfo fenceInfo = {.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-  VkFence fence = VK_NULL_HANDLE;
-  check(vkCreateFence(m_device, &fenceInfo, nullptr, &fence), "creating a fence");
-  const Owned<VkFence> ownedFence(m_device, fence, vkDestroyFence);
-  submit(0, commands, fence);
-  check(vkWaitForFences(m_device, 1, &fence, VK_TRUE, UINT64_MAX), "waiting for the device");
-}
-
 void Device::submit(std::size_t queue, VkCommandBuffer commands, VkFence fence) const {
   const VkSubmitInfo info = {.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
                              .commandBufferCount = 1,
                              .pCommandBuffers = &commands};
   const std::lock_guard lock(m_queueLocks[queue]);
   check(vkQueueSubmit(m_queues[queue], 1, &info, fence), "starting the device");
+}
+
+Commands::Commands(const Device& device) : m_device(device) {
+  const VkCommandPoolCreateInfo poolInfo = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                            .flags =
+                                                VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
+                                            .queueFamilyIndex = device.family()};
+  VkCommandPool pool = VK_NULL_HANDLE;
+  check(vkCreateCommandPool(device.get(), &poolInfo, nullptr, &pool), "creating commands");
+  m_pool = {device.get(), pool, vkDestroyCommandPool};
+  const VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                            .commandPool = pool,
+                                            .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                            .commandBufferCount = 1};
+  check(vkAllocateCommandBuffers(device.get(), &info, &m_buffer), "creating commands");
+  const VkFenceCreateInfo fenceInfo = {.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+  VkFence fence = VK_NULL_HANDLE;
+  check(vkCreateFence(device.get(), &fenceInfo, nullptr, &fence), "creating a fence");
+  m_fence = {device.get(), fence, vkDestroyFence};
+}
+
+void Commands::begin() const {
+  const VkCommandBufferBeginInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                         .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+  check(vkBeginCommandBuffer(m_buffer, &info), "recording commands");
+}
+
+void Commands::submit(std::size_t queue) const {
+  check(vkEndCommandBuffer(m_buffer), "recording commands");
+  check(vkResetFences(m_device.get(), 1, m_fence.address()), "resetting a fence");
+  m_device.submit(queue, m_buffer, m_fence.get());
+  check(vkWaitForFences(m_device.get(), 1, m_fence.address(), VK_TRUE, UINT64_MAX),
+        "waiting for the device");
 }
 
 } // namespace fenestra::core::gpu

@@ -126,9 +126,6 @@ private:
   void copyVoxels(const void* content, const VkExtent3D& extent, std::uint32_t bytes,
                   VkImage image) const;
   Owned<VkDeviceMemory> allocate(const VkMemoryRequirements& needed, Memory memory) const;
-  /// Records commands, runs them and waits.
-  template <typename Record>
-  void runOnce(Record&& record) const;
 
   DeviceInfo m_info;
   VkPhysicalDeviceLimits m_limits = {};
@@ -138,6 +135,31 @@ private:
   std::vector<VkQueue> m_queues;
   Owned<VkPipelineCache> m_pipelineCache; ///< compiled shaders of earlier renders
   mutable std::vector<std::mutex> m_queueLocks;
+};
+
+/// A command buffer that is recorded and run again and again. Must not outlive the device.
+class Commands {
+public:
+  /// Throws DeviceError.
+  explicit Commands(const Device& device);
+
+  /// Records commands by record(buffer), runs them on a queue and waits for their end. Throws
+  /// DeviceError.
+  template <typename Record>
+  void run(std::size_t queue, Record&& record) const {
+    begin();
+    record(m_buffer);
+    submit(queue);
+  }
+
+private:
+  void begin() const;
+  void submit(std::size_t queue) const;
+
+  const Device& m_device;
+  Owned<VkCommandPool> m_pool;
+  Owned<VkFence> m_fence;
+  VkCommandBuffer m_buffer = VK_NULL_HANDLE;
 };
 
 } // namespace fenestra::core::gpu

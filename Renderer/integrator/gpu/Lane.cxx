@@ -28,7 +28,8 @@ Lane::Lane(const Pipeline& pipeline, std::size_t queue, const LaneLimits& limits
     : m_pipeline(pipeline),
       m_queue(queue),
       m_limits(limits),
-      m_steps(std::min(limits.maxSteps, 256)) {
+      m_steps(std::min(limits.maxSteps, 256)),
+      m_commands(pipeline.device()) {
   const Device& device = pipeline.device();
   m_starts = device.makeBuffer(limits.paths * sizeof(PathStart), Memory::upload);
   m_deviceStarts = device.makeBuffer(m_starts.size, Memory::device);
@@ -37,22 +38,6 @@ Lane::Lane(const Pipeline& pipeline, std::size_t queue, const LaneLimits& limits
   m_states = device.makeBuffer(limits.threads * stateSize, Memory::device);
   m_work = device.makeBuffer(sizeof(Work), Memory::readback);
   bindBuffers();
-  const VkCommandPoolCreateInfo poolInfo = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                            .flags =
-                                                VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                            .queueFamilyIndex = device.family()};
-  VkCommandPool pool = VK_NULL_HANDLE;
-  check(vkCreateCommandPool(device.get(), &poolInfo, nullptr, &pool), "creating commands");
-  m_commandPool = {device.get(), pool, vkDestroyCommandPool};
-  const VkCommandBufferAllocateInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                            .commandPool = pool,
-                                            .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                            .commandBufferCount = 1};
-  check(vkAllocateCommandBuffers(device.get(), &info, &m_commands), "creating commands");
-  const VkFenceCreateInfo fenceInfo = {.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-  VkFence fence = VK_NULL_HANDLE;
-  check(vkCreateFence(device.get(), &fenceInfo, nullptr, &fence), "creating a fence");
-  m_fence = {device.get(), fence, vkDestroyFence};
 }
 
 void Lane::bindBuffers() {
@@ -103,63 +88,49 @@ void Lane::bindBuffers() {
 
 bool Lane::run(std::size_t count, const StopFlag& stop, Counters& counters) {
   auto* const work = static_cast<Work*>(m_work.mapped);
+  const auto run = [&](auto&& record) { m_commands.run(m_queue, record); };
   *work = {};
-  submit([&] { recordBegin(count); });
+  run([&](VkCommandBuffer commands) { recordBegin(commands, count); });
   do {
     if (stop.load(std::memory_order_relaxed))
       return false;
     *work = {.nextPath = work->nextPath};
     const Stopwatch watch;
-    submit([&] { recordDispatch(count); });
+    run([&](VkCommandBuffer commands) { recordDispatch(commands, count); });
     adaptSteps(watch.seconds());
     addCounts(counters);
   } while (work->unfinished > 0 || work->nextPath < static_cast<std::int32_t>(count));
-  submit([&] { recordEnd(count); });
+  run([&](VkCommandBuffer commands) { recordEnd(commands, count); });
   counters.paths += count;
   return true;
 }
 
-/// Runs the commands that `record` records, and waits for their end.
-template <typename Record>
-void Lane::submit(Record&& record) {
-  const VkDevice device = m_pipeline.device().get();
-  const VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                          .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-  check(vkBeginCommandBuffer(m_commands, &begin), "recording commands");
-  record();
-  check(vkEndCommandBuffer(m_commands), "recording commands");
-  check(vkResetFences(device, 1, m_fence.address()), "resetting a fence");
-  m_pipeline.device().submit(m_queue, m_commands, m_fence.get());
-  check(vkWaitForFences(device, 1, m_fence.address(), VK_TRUE, UINT64_MAX),
-        "waiting for the device");
-}
-
-void Lane::recordBegin(std::size_t count) const {
+void Lane::recordBegin(VkCommandBuffer commands, std::size_t count) const {
   const VkBufferCopy copy = {.size = count * sizeof(PathStart)};
-  vkCmdCopyBuffer(m_commands, m_starts.get(), m_deviceStarts.get(), 1, &copy);
+  vkCmdCopyBuffer(commands, m_starts.get(), m_deviceStarts.get(), 1, &copy);
   // All threads are idle; this also discards the paths of a batch that was stopped.
-  vkCmdFillBuffer(m_commands, m_states.get(), 0, VK_WHOLE_SIZE, 0);
+  vkCmdFillBuffer(commands, m_states.get(), 0, VK_WHOLE_SIZE, 0);
 }
 
-void Lane::recordDispatch(std::size_t count) const {
-  addBarrier(m_commands, VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+void Lane::recordDispatch(VkCommandBuffer commands, std::size_t count) const {
+  addBarrier(commands, VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_WRITE_BIT,
              VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
-  vkCmdBindPipeline(m_commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_pipeline.get());
-  vkCmdBindDescriptorSets(m_commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_pipeline.layout(), 0, 1,
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_pipeline.get());
+  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_pipeline.layout(), 0, 1,
                           &m_set, 0, nullptr);
   const auto paths = static_cast<std::uint32_t>(count);
   const Pipeline::Push push = {static_cast<std::int32_t>(paths), m_steps};
-  vkCmdPushConstants(m_commands, m_pipeline.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push,
+  vkCmdPushConstants(commands, m_pipeline.layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof push,
                      &push);
-  vkCmdDispatch(m_commands, (std::min(m_limits.threads, paths) + groupSize - 1) / groupSize, 1, 1);
-  addBarrier(m_commands, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT);
+  vkCmdDispatch(commands, (std::min(m_limits.threads, paths) + groupSize - 1) / groupSize, 1, 1);
+  addBarrier(commands, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT);
 }
 
-void Lane::recordEnd(std::size_t count) const {
-  addBarrier(m_commands, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_TRANSFER_READ_BIT);
+void Lane::recordEnd(VkCommandBuffer commands, std::size_t count) const {
+  addBarrier(commands, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_TRANSFER_READ_BIT);
   const VkBufferCopy copy = {.size = count * sizeof(PathResult)};
-  vkCmdCopyBuffer(m_commands, m_deviceResults.get(), m_results.get(), 1, &copy);
-  addBarrier(m_commands, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT);
+  vkCmdCopyBuffer(commands, m_deviceResults.get(), m_results.get(), 1, &copy);
+  addBarrier(commands, VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT);
 }
 
 /// Keeps the time of a dispatch near 20 ms, so that displays stay responsive and stops are quick.

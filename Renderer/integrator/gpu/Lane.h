@@ -42,11 +42,9 @@ private:
   };
 
   void bindBuffers();
-  template <typename Record>
-  void submit(Record&& record);
-  void recordBegin(std::size_t count) const;
-  void recordDispatch(std::size_t count) const;
-  void recordEnd(std::size_t count) const;
+  void recordBegin(VkCommandBuffer commands, std::size_t count) const;
+  void recordDispatch(VkCommandBuffer commands, std::size_t count) const;
+  void recordEnd(VkCommandBuffer commands, std::size_t count) const;
   void addCounts(Counters& counters) const;
   void adaptSteps(double seconds);
 
@@ -56,10 +54,8 @@ private:
   std::int32_t m_steps;
   Buffer m_starts, m_deviceStarts, m_results, m_deviceResults, m_states, m_work;
   Owned<VkDescriptorPool> m_descriptors;
-  Owned<VkCommandPool> m_commandPool;
-  Owned<VkFence> m_fence;
   VkDescriptorSet m_set = VK_NULL_HANDLE;
-  VkCommandBuffer m_commands = VK_NULL_HANDLE;
+  Commands m_commands;
 };
 
 } // namespace fenestra::core::gpu

@@ -27,13 +27,20 @@ VoxelImage makeFocus(const Device& device, const SimdMedium& medium) {
   return makeVoxels(device, medium.context ? medium.context->focus : SimdField{&none, 1, {}}, 1);
 }
 
+/// The shader counts bytes of the tables in 32 bits, with a sign.
+Buffer makeTables(const Device& device, const std::vector<std::uint32_t>& words) {
+  if (words.size() > std::numeric_limits<Int>::max() / sizeof(UInt))
+    throw DeviceError("the scene's tables exceed 2 GiB");
+  return device.makeBuffer(words.data(), words.size() * sizeof(UInt));
+}
+
 } // namespace
 
 Pipeline::Pipeline(std::shared_ptr<const Device> device, const SimdMedium& medium,
                    const SceneTables& scene)
     : m_device(std::move(device)),
       m_scene(m_device->makeBuffer(&scene.numbers, sizeof scene.numbers)),
-      m_tables(m_device->makeBuffer(scene.words.data(), scene.words.size() * sizeof(UInt))),
+      m_tables(makeTables(*m_device, scene.words)),
       m_voxels(makeVoxels(*m_device, medium.field, voxelSize(medium))),
       m_focus(makeFocus(*m_device, medium)) {
   createLayout();

@@ -44,7 +44,7 @@ SceneTables::SceneTables(const SimdMedium& medium, const SimdShading& shading,
   setMaps(shading);
   setCamera(camera);
   setClip(medium);
-  numbers.nets = static_cast<Int>(words.size());
+  numbers.nets = next();
   words.insert(words.end(), Sampler::nets.begin(), Sampler::nets.end());
 }
 
@@ -53,15 +53,15 @@ Int SceneTables::append(float x) {
 }
 Int SceneTables::append(Int x) {
   words.push_back(static_cast<std::uint32_t>(x));
-  return static_cast<Int>(words.size()) - 1;
+  return next() - 1;
 }
 Int SceneTables::appendInts(std::span<const std::int32_t> numbers32) {
-  const auto at = static_cast<Int>(words.size());
+  const auto at = next();
   words.insert(words.end(), numbers32.begin(), numbers32.end());
   return at;
 }
 Int SceneTables::appendBytes(std::span<const std::uint8_t> bytes) {
-  const auto at = static_cast<Int>(words.size());
+  const auto at = next();
   words.resize(words.size() + bytes.size() / sizeof(UInt));
   std::memcpy(words.data() + at, bytes.data(), bytes.size());
   return at;
@@ -95,14 +95,14 @@ void SceneTables::setCells(const SimdMedium& medium) {
   numbers.firstCell = medium.firstCell;
   numbers.endCell = medium.lastCell;
   numbers.overshoot = medium.overshoot;
-  numbers.cells = static_cast<Int>(words.size());
+  numbers.cells = next();
   for (const std::int32_t code : medium.cells.codes)
     append(code);
 }
 
 void SceneTables::setFunctions(const SimdMedium& medium, const SimdShading& shading) {
   const SimdLines& table = medium.extinctions;
-  numbers.lines = static_cast<Int>(words.size());
+  numbers.lines = next();
   for (const SimdTable::Line& line : table.lines) {
     append(line.value);
     append(line.slope);
@@ -113,7 +113,7 @@ void SceneTables::setFunctions(const SimdMedium& medium, const SimdShading& shad
   numbers.lastLine = table.last;
   numbers.extinctions = appendFunctions(table.segments);
   numbers.albedos = appendFunctions(shading.albedos);
-  numbers.bsdfs = static_cast<Int>(words.size());
+  numbers.bsdfs = next();
   for (const SimdShading::BsdfNumbers& bsdf : shading.bsdfs)
     for (const float number : bsdf)
       append(number);
@@ -123,14 +123,13 @@ void SceneTables::setFunctions(const SimdMedium& medium, const SimdShading& shad
 Int SceneTables::appendFunctions(const std::vector<SimdTable>& functions) {
   std::vector<std::array<Int, 4>> headers;
   for (const SimdTable& table : functions) {
-    const auto begin = [&] { return static_cast<Int>(words.size()); };
-    std::array<Int, 4> header = {begin()};
+    std::array<Int, 4> header = {next()};
     for (const float position : table.position)
       append(position);
-    header[1] = begin();
+    header[1] = next();
     for (const std::int32_t segment : table.binSegment)
       append(segment);
-    header[2] = begin();
+    header[2] = next();
     header[3] = 2 * static_cast<Int>(table.channels.front().size());
     for (const SimdTable::Channel& channel : table.channels)
       for (const SimdTable::Line& line : channel) {
@@ -139,7 +138,7 @@ Int SceneTables::appendFunctions(const std::vector<SimdTable>& functions) {
       }
     headers.push_back(header);
   }
-  const auto first = static_cast<Int>(words.size());
+  const auto first = next();
   for (std::size_t i = 0; i < functions.size(); ++i) {
     for (const Int offset : headers[i])
       append(offset);
@@ -192,9 +191,8 @@ void SceneTables::setContext(const SimdMedium& medium) {
 /// Members in the order of Maps.inl.
 void SceneTables::setMaps(const SimdShading& shading) {
   std::vector<std::array<Int, 4>> tables; // offsets of texels, rows, columns and oneMinusCos
-  const auto begin = [&] { return static_cast<Int>(words.size()); };
   const auto appendSlots = [&](const AliasTables& alias) {
-    const Int at = begin();
+    const Int at = next();
     for (const AliasTables::Slot& slot : alias.slots) {
       append(slot.threshold);
       append(slot.alias);
@@ -202,16 +200,16 @@ void SceneTables::setMaps(const SimdShading& shading) {
     return at;
   };
   for (const EnvironmentTables& map : shading.maps) {
-    const Int texels = begin();
+    const Int texels = next();
     for (std::int32_t i = 0; i < 3 * map.width * map.height; ++i)
       append(map.rgb[i]);
     const Int rows = appendSlots(map.rows), columns = appendSlots(map.columns);
-    tables.push_back({texels, rows, columns, begin()});
+    tables.push_back({texels, rows, columns, next()});
     for (const float number : map.oneMinusCos)
       append(number);
   }
   features.mapCount = static_cast<Int>(shading.maps.size());
-  numbers.maps = begin();
+  numbers.maps = next();
   for (std::size_t i = 0; i < tables.size(); ++i) {
     const EnvironmentTables& map = shading.maps[i];
     append(map.width);
@@ -232,13 +230,12 @@ void SceneTables::setMaps(const SimdShading& shading) {
 void SceneTables::setLights(const SimdShading& shading) {
   const LightTables<float>& lights = shading.lights;
   const auto three = [&](const auto& v) { append(std::array{v[0], v[1], v[2]}); };
-  const auto begin = [&] { return static_cast<Int>(words.size()); };
   numbers.constantRed = lights.constant[0];
   numbers.constantGreen = lights.constant[1];
   numbers.constantBlue = lights.constant[2];
   features.hasSampledLights = shading.hasSampledLights ? 1 : 0;
   features.skyCount = static_cast<Int>(lights.skies.size());
-  numbers.skies = begin();
+  numbers.skies = next();
   for (const auto& sky : lights.skies) {
     three(sky.up);
     three(sky.middle);
@@ -246,14 +243,14 @@ void SceneTables::setLights(const SimdShading& shading) {
     three(sky.toBottom);
   }
   features.directionalCount = static_cast<Int>(lights.directionals.size());
-  numbers.directionals = begin();
+  numbers.directionals = next();
   for (const auto& light : lights.directionals) {
     append(light.pmf);
     three(light.toward);
     three(light.irradiance);
   }
   features.areaCount = static_cast<Int>(lights.areas.size());
-  numbers.areas = begin();
+  numbers.areas = next();
   for (const auto& light : lights.areas) {
     append(light.pmf);
     append(light.isDisk ? 1 : 0);
@@ -267,7 +264,7 @@ void SceneTables::setLights(const SimdShading& shading) {
     three(light.radiance);
   }
   features.sphereCount = static_cast<Int>(lights.spheres.size());
-  numbers.spheres = begin();
+  numbers.spheres = next();
   for (const auto& light : lights.spheres) {
     append(light.pmf);
     three(light.center);
@@ -294,7 +291,7 @@ void SceneTables::setClip(const SimdMedium& medium) {
   numbers.toPlane = medium.toPlane;
   numbers.cutNormal = toRow(medium.cutNormal);
   numbers.cutSlope = medium.cutSlope;
-  numbers.depths = static_cast<Int>(words.size());
+  numbers.depths = next();
   numbers.depthColumns = medium.depthColumns;
   for (std::size_t i = 0; i < medium.depthCount; ++i)
     append(medium.depths[i]);
@@ -305,7 +302,7 @@ void SceneTables::setClip(const SimdMedium& medium) {
 void SceneTables::setSilhouettes(const SilhouetteCells& silhouettes) {
   features.hasSilhouettes = 1;
   numbers.silhouetteCells = appendInts(silhouettes.indices());
-  numbers.silhouettes = static_cast<Int>(words.size());
+  numbers.silhouettes = next();
   const auto& bounds = silhouettes.depthBounds();
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     append(bounds[i].min);

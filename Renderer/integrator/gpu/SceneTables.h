@@ -20,6 +20,7 @@ struct SceneTables {
   std::vector<std::uint32_t> words;
 
 private:
+  Int next() const { return static_cast<Int>(words.size()); } ///< offset of what is appended next
   Int append(float x);
   Int append(Int x);
   Int append(const std::array<float, 3>& v);

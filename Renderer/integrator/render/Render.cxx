@@ -89,17 +89,9 @@ bool renderPass(const Tracer& tracer, const PassInputs& inputs, RenderResult& re
   }
 }
 
-/// True if all camera rays through one pixel that meet no medium return the same radiance.
-bool isConstantPerPixel(const Background& background, const LightSet& lights) {
-  return background.kind != Background::Kind::environment ||
-         (!lights.hasMaps() && lights.tables().skies.empty());
-}
-
 /// Finds the pixels that need only one sample, and marks them as deterministic in the film.
 EmptyPixels markEmptyPixels(const SceneView& scene, const RenderSettings& settings, Film& film) {
-  EmptyPixels empty = isConstantPerPixel(settings.path.background, scene.lights)
-                          ? EmptyPixels(scene.camera, scene.majorants)
-                          : EmptyPixels();
+  EmptyPixels empty = findEmptyPixels(scene, settings);
   for (int row = 0; row < film.height(); ++row)
     for (int column = 0; column < film.width(); ++column)
       film.at(column, row).isDeterministic = empty.contains(column, row);

@@ -65,6 +65,14 @@ inline void traceStream(const gpu::PathIntegrator& tracer, int lane, TileStream&
   tracer.trace(static_cast<std::size_t>(lane), stream, maxPaths, counters);
 }
 
+/// Pixels that need only one sample: their camera rays meet no medium, and the background is
+/// constant within each pixel.
+inline EmptyPixels findEmptyPixels(const SceneView& scene, const RenderSettings& settings) {
+  const bool isConstant = settings.path.background.kind != Background::Kind::environment ||
+                          (!scene.lights.hasMaps() && scene.lights.tables().skies.empty());
+  return isConstant ? EmptyPixels(scene.camera, scene.majorants) : EmptyPixels();
+}
+
 /// A scene as the SIMD integrator and the GPU read it.
 struct SimdScene {
   SimdScene(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop)

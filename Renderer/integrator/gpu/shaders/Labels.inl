@@ -13,12 +13,8 @@ FORMULA Float4 loadSlice(Int at) {
   slice[3] = toFloat(loadByte(at + brickVoxels + 1));
   return slice;
 }
-FORMULA Float interpolateSlice(Float4 v, Float3 at) {
-  return interpolate(v[0], v[1], v[2], v[3], at.x, at.y);
-}
-FORMULA Float interpolateWeights(STRUCT(CornerWeights) weights, Float3 at) {
-  return lerp(interpolateSlice(weights.near, at), interpolateSlice(weights.far, at), at.z) *
-         0.003921568859F; // 1 / 255
+FORMULA Float interpolateWeights(STRUCT(CornerWeights) weights, Float3 inside) {
+  return interpolateCell(weights.near, weights.far, inside) * 0.003921568859F; // 1 / 255
 }
 
 /// Visits the components at a point; `component` and `fraction` are those of the current one.
@@ -86,8 +82,7 @@ FORMULA bool nextLabel(INOUT(LabelCursor) cursor) {
   return cursor.fraction > 0.0F;
 }
 
-/// Components of a medium (SceneTables): one, segments that differ in albedo only, or a mixture.
-CONSTANT Int oneComponent = 0;
+/// componentKind of segments that differ in albedo only, and of a mixture (Features).
 CONSTANT Int tinted = 1;
 CONSTANT Int mixed = 2;
 
@@ -99,22 +94,18 @@ FORMULA LaneMask isUnclipped(Int component) {
 
 /// True in the focus, where the context style does not apply.
 FORMULA bool isFocus(Float3 index) {
-  const Float3 p = mapPoint(scene.toFocus, index);
-  const AxisPosition x = locateOnAxis(scene.focusX.last, scene.focusX.lastCell, p.x);
-  const AxisPosition y = locateOnAxis(scene.focusY.last, scene.focusY.lastCell, p.y);
-  const AxisPosition z = locateOnAxis(scene.focusZ.last, scene.focusZ.lastCell, p.z);
-  const Int x0 = toInt(x.lower);
-  const Int y0 = toInt(y.lower);
-  const Int z0 = toInt(z.lower);
-  const Int x1 = x0 + scene.focusX.step;
-  const Int y1 = y0 + scene.focusY.step;
-  const Int z1 = z0 + scene.focusZ.step;
-  const Float near =
-      interpolate(loadFocus(x0, y0, z0), loadFocus(x1, y0, z0), loadFocus(x0, y1, z0),
-                  loadFocus(x1, y1, z0), x.fraction, y.fraction);
-  const Float far = interpolate(loadFocus(x0, y0, z1), loadFocus(x1, y0, z1), loadFocus(x0, y1, z1),
-                                loadFocus(x1, y1, z1), x.fraction, y.fraction);
-  return lerp(near, far, z.fraction) >= scene.focusLevel;
+  const VoxelCell c =
+      findVoxels(scene.focusX, scene.focusY, scene.focusZ, mapPoint(scene.toFocus, index));
+  Float4 near, far;
+  near[0] = loadFocus(c.x0, c.y0, c.z0);
+  near[1] = loadFocus(c.x1, c.y0, c.z0);
+  near[2] = loadFocus(c.x0, c.y1, c.z0);
+  near[3] = loadFocus(c.x1, c.y1, c.z0);
+  far[0] = loadFocus(c.x0, c.y0, c.z1);
+  far[1] = loadFocus(c.x1, c.y0, c.z1);
+  far[2] = loadFocus(c.x0, c.y1, c.z1);
+  far[3] = loadFocus(c.x1, c.y1, c.z1);
+  return interpolateCell(near, far, c.inside) >= scene.focusLevel;
 }
 
 /// Extinction (mm^-1) of the components that the clip can remove, and of the others.

@@ -8,23 +8,45 @@ FORMULA Float3 toFloat3(STRUCT(AffineRow) v) {
   return Float3(v[0], v[1], v[2]);
 }
 
+/// The eight voxels around a point, and its distances from the lowest one, 0 to 1.
+struct VoxelCell {
+  Int x0, y0, z0, x1, y1, z1;
+  Float3 inside;
+};
+FORMULA VoxelCell findVoxels(STRUCT(VoxelAxis) axisX, STRUCT(VoxelAxis) axisY,
+                             STRUCT(VoxelAxis) axisZ, Float3 p) {
+  const AxisPosition x = locateOnAxis(axisX.last, axisX.lastCell, p.x);
+  const AxisPosition y = locateOnAxis(axisY.last, axisY.lastCell, p.y);
+  const AxisPosition z = locateOnAxis(axisZ.last, axisZ.lastCell, p.z);
+  VoxelCell cell;
+  cell.x0 = toInt(x.lower);
+  cell.y0 = toInt(y.lower);
+  cell.z0 = toInt(z.lower);
+  cell.x1 = cell.x0 + axisX.step;
+  cell.y1 = cell.y0 + axisY.step;
+  cell.z1 = cell.z0 + axisZ.step;
+  cell.inside = Float3(x.fraction, y.fraction, z.fraction);
+  return cell;
+}
+/// Trilinear between the values of two slices: (0, 0), (1, 0), (0, 1) and (1, 1) of each.
+FORMULA Float interpolateCell(Float4 near, Float4 far, Float3 inside) {
+  return lerp(interpolate(near[0], near[1], near[2], near[3], inside.x, inside.y),
+              interpolate(far[0], far[1], far[2], far[3], inside.x, inside.y), inside.z);
+}
+
 /// The scalar, trilinear between voxel centers.
 FORMULA Float interpolateScalar(Float3 p) {
-  const AxisPosition x = locateOnAxis(scene.voxelsX.last, scene.voxelsX.lastCell, p.x);
-  const AxisPosition y = locateOnAxis(scene.voxelsY.last, scene.voxelsY.lastCell, p.y);
-  const AxisPosition z = locateOnAxis(scene.voxelsZ.last, scene.voxelsZ.lastCell, p.z);
-  const Int x0 = toInt(x.lower);
-  const Int y0 = toInt(y.lower);
-  const Int z0 = toInt(z.lower);
-  const Int x1 = x0 + scene.voxelsX.step;
-  const Int y1 = y0 + scene.voxelsY.step;
-  const Int z1 = z0 + scene.voxelsZ.step;
-  const Float near =
-      interpolate(loadVoxel(x0, y0, z0), loadVoxel(x1, y0, z0), loadVoxel(x0, y1, z0),
-                  loadVoxel(x1, y1, z0), x.fraction, y.fraction);
-  const Float far = interpolate(loadVoxel(x0, y0, z1), loadVoxel(x1, y0, z1), loadVoxel(x0, y1, z1),
-                                loadVoxel(x1, y1, z1), x.fraction, y.fraction);
-  return lerp(near, far, z.fraction);
+  const VoxelCell c = findVoxels(scene.voxelsX, scene.voxelsY, scene.voxelsZ, p);
+  Float4 near, far;
+  near[0] = loadVoxel(c.x0, c.y0, c.z0);
+  near[1] = loadVoxel(c.x1, c.y0, c.z0);
+  near[2] = loadVoxel(c.x0, c.y1, c.z0);
+  near[3] = loadVoxel(c.x1, c.y1, c.z0);
+  far[0] = loadVoxel(c.x0, c.y0, c.z1);
+  far[1] = loadVoxel(c.x1, c.y0, c.z1);
+  far[2] = loadVoxel(c.x0, c.y1, c.z1);
+  far[3] = loadVoxel(c.x1, c.y1, c.z1);
+  return interpolateCell(near, far, c.inside);
 }
 
 /// Segment of a table that contains a scalar (SimdTable).

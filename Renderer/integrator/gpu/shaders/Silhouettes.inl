@@ -12,28 +12,28 @@ CONSTANT Real captureThreshold = Real(0.25);
 CONSTANT Real blendStart = Real(0.45);
 CONSTANT Real rootRounding = Real(1e-7);
 
+/// Direction of a camera ray per mm of depth, view space.
+FORMULA Float3 viewDirection(Float x, Float y) {
+  if (scene.clip.isPerspective != 0)
+    return Float3(x / scene.clip.targetDepth, y / scene.clip.targetDepth, 1.0F);
+  return Float3(0.0F, 0.0F, 1.0F);
+}
 /// A camera ray in the cell space of the focus.
 struct FocusRay {
   Float3 origin, direction;
 };
 FORMULA FocusRay makeFocusRay(Float x, Float y) {
-  Float3 along = Float3(0.0F, 0.0F, 1.0F);
-  if (scene.clip.isPerspective != 0)
-    along = Float3(x / scene.clip.targetDepth, y / scene.clip.targetDepth, 1.0F);
   FocusRay ray;
   ray.origin = mapPoint(scene.viewToCells, Float3(x, y, 0.0F));
-  ray.direction = mapDirection(scene.viewToCells, along);
+  ray.direction = mapDirection(scene.viewToCells, viewDirection(x, y));
   return ray;
 }
 /// Part of a camera ray inside the domain, for a focus that is partly outside.
 FORMULA LaneIntervals clipFocusRay(LaneIntervals t, Float x, Float y) {
   if (scene.isFocusInside != 0)
     return t;
-  Float3 along = Float3(0.0F, 0.0F, 1.0F);
-  if (scene.clip.isPerspective != 0)
-    along = Float3(x / scene.clip.targetDepth, y / scene.clip.targetDepth, 1.0F);
   return clipToDomain(t, mapPoint(scene.viewToIndex, Float3(x, y, 0.0F)),
-                      mapDirection(scene.viewToIndex, along));
+                      mapDirection(scene.viewToIndex, viewDirection(x, y)));
 }
 
 /// Traversal along one axis (FocusAxis-inl.h). Rays of negative direction are mirrored.
@@ -112,6 +112,27 @@ FORMULA Cubic makeCubic(Int corners, Int value, Float3 at, Float3 move) {
   return c;
 }
 
+/// A cell of the focus.
+struct FocusCell {
+  Int block;   ///< 0: empty
+  Int corners; ///< FocusCells::BlockCorners; 0: no corner above captureThreshold
+  Int value;   ///< byte of the value at its lowest corner
+};
+FORMULA FocusCell findFocusCell(Int i, Int j, Int k) {
+  FocusCell cell;
+  cell.block = loadInt(scene.focusBlocks + (i >> 2) +
+                       scene.focusBlocksX * ((j >> 2) + scene.focusBlocksY * (k >> 2)));
+  const Int x = i & 3;
+  const Int y = j & 3;
+  const Int z = k & 3;
+  cell.corners = 0;
+  if (cell.block != 0)
+    cell.corners = loadByte(scene.focusCorners * 4 + cell.block * 64 + x + 4 * (y + 4 * z));
+  cell.value =
+      scene.focusValues * 4 + cell.block * planeBytes + x + brickVoxels * (y + brickVoxels * z);
+  return cell;
+}
+
 /// The ray maximum so far: indicator - 1/2, its t, and the t at which its ridge ends.
 struct RayMaximum {
   Float height, t, ridgeEnd;
@@ -165,26 +186,16 @@ FORMULA FocusHit traceFocus(STRUCT(FocusRay) ray, LaneIntervals range, bool want
   best.ridgeEnd = -infiniteReal;
   Float t = range.begin;
   for (;;) { // each step leaves a cell along one axis, so it ends
-    const Int i = cellIndex(x);
-    const Int j = cellIndex(y);
-    const Int k = cellIndex(z);
-    const Int block = loadInt(scene.focusBlocks + (i >> 2) +
-                              scene.focusBlocksX * ((j >> 2) + scene.focusBlocksY * (k >> 2)));
-    const Float toX = findFace(x, block == 0);
-    const Float toY = findFace(y, block == 0);
-    const Float toZ = findFace(z, block == 0);
+    const FocusCell cell = findFocusCell(cellIndex(x), cellIndex(y), cellIndex(z));
+    const Float toX = findFace(x, cell.block == 0);
+    const Float toY = findFace(y, cell.block == 0);
+    const Float toZ = findFace(z, cell.block == 0);
     const Float leave = min(min(toX, toY), toZ);
     const Float exit = min(range.end, max(t, leave));
-    Int corners = 0;
-    if (block != 0)
-      corners =
-          loadByte(scene.focusCorners * 4 + block * 64 + (i & 3) + 4 * ((j & 3) + 4 * (k & 3)));
-    if (corners != 0) {
-      const Int value = scene.focusValues * 4 + block * planeBytes + (i & 3) +
-                        brickVoxels * ((j & 3) + brickVoxels * (k & 3));
+    if (cell.corners != 0) {
       const Float length = exit - t;
       const Float3 at = Float3(fractionAt(x, t), fractionAt(y, t), fractionAt(z, t));
-      const Cubic cubic = makeCubic(corners, value, at, length * ray.direction);
+      const Cubic cubic = makeCubic(cell.corners, cell.value, at, length * ray.direction);
       const Float s = findFirstNonNegative(cubic, rootRounding);
       if (s < infiniteReal) {
         hit.t = t + s * length;
@@ -224,16 +235,11 @@ FORMULA bool isInFocus(STRUCT(FocusRay) ray, Float x, Float y, Float t) {
   const Int i = toInt(p.x);
   const Int j = toInt(p.y);
   const Int k = toInt(p.z);
-  const Int block = loadInt(scene.focusBlocks + (i >> 2) +
-                            scene.focusBlocksX * ((j >> 2) + scene.focusBlocksY * (k >> 2)));
-  if (block == 0)
+  const FocusCell cell = findFocusCell(i, j, k);
+  if (cell.block == 0)
     return false;
-  const Int corners =
-      loadByte(scene.focusCorners * 4 + block * 64 + (i & 3) + 4 * ((j & 3) + 4 * (k & 3)));
-  const Int value = scene.focusValues * 4 + block * planeBytes + (i & 3) +
-                    brickVoxels * ((j & 3) + brickVoxels * (k & 3));
   const Float3 at = Float3(p.x - toFloat(i), p.y - toFloat(j), p.z - toFloat(k));
-  return makeCubic(corners, value, at, Float3(0.0F, 0.0F, 0.0F)).c0 >= 0.0F;
+  return makeCubic(cell.corners, cell.value, at, Float3(0.0F, 0.0F, 0.0F)).c0 >= 0.0F;
 }
 
 /// Depth of the surface at (x, y) in a silhouette cell (SilhouetteCells::evaluate). `depth`:
