@@ -65,7 +65,7 @@ RenderSettings makeSettings() {
   settings.passSamples = 1;
   settings.threads = 2;
   // Several batches and dispatches, so that a device can fail between two of them.
-  settings.laneLimits = gpu::LaneLimits{.threads = 64, .paths = 256, .maxSteps = 64};
+  settings.batchLimits = gpu::BatchLimits{.threads = 64, .paths = 256, .maxSteps = 64};
   return settings;
 }
 

@@ -48,7 +48,7 @@ TEST(GpuFeatures, AreAllInTheScenes) {
 
 /// Sizes of a render's parts: the device's work, and passes.
 struct Slicing {
-  gpu::LaneLimits limits;
+  gpu::BatchLimits limits;
   std::uint64_t passSamples;
 };
 
@@ -63,7 +63,7 @@ TEST_F(GpuSlicing, ChangesNoBit) {
                                   {{.threads = 1024, .paths = 333, .maxSteps = 40}, 4}};
   for (const auto& [limits, passSamples] : slicings) {
     RenderSettings settings = s.settings;
-    settings.laneLimits = limits;
+    settings.batchLimits = limits;
     settings.passSamples = passSamples;
     const RenderResult result = renderOnGpu(s.scene, settings);
     expectIdentical(result.film, once.film);

@@ -5,34 +5,35 @@
 namespace fenestra::core::gpu {
 namespace {
 
-/// Two lanes suffice to overlap the work of host and device; more help devices with several queues.
-std::size_t chooseLaneCount(const Device& device) {
+/// Two tracers suffice to overlap the work of host and device; more help devices with several
+/// queues.
+std::size_t chooseTracerCount(const Device& device) {
   return std::max<std::size_t>(2, device.queueCount());
 }
 
 } // namespace
 
-LaneLimits chooseLimits(const Device& device) {
+BatchLimits chooseLimits(const Device& device) {
   // Mesa's software device ends all loops of a dispatch after 65,535 iterations in total, and a
   // step through an exact surface takes hundreds.
   if (device.isSoftware())
     return {.threads = 1024, .paths = std::size_t{1} << 13, .maxSteps = 16};
-  // All lanes together keep half a million threads busy.
-  const std::uint32_t threads = (1U << 19) / static_cast<std::uint32_t>(chooseLaneCount(device));
+  // All tracers together keep half a million threads busy.
+  const std::uint32_t threads = (1U << 19) / static_cast<std::uint32_t>(chooseTracerCount(device));
   return {.threads = threads / 64 * 64, .paths = std::size_t{2} * threads};
 }
 
 PathIntegrator::PathIntegrator(std::shared_ptr<const Device> device, const SimdMedium& medium,
                                const SceneTables& scene, const CameraTable& camera,
                                const CameraRays& cameraRays, const StopFlag& stop,
-                               const LaneLimits& limits)
+                               const BatchLimits& limits)
     : m_pipeline(std::move(device), medium, scene),
       m_nearDepth(camera.nearDepth),
       m_cameraRays(cameraRays),
       m_stop(stop) {
   const Device& on = m_pipeline.device();
-  for (std::size_t i = 0; i < chooseLaneCount(on); ++i)
-    m_lanes.push_back(std::make_unique<Lane>(m_pipeline, i % on.queueCount(), limits));
+  for (std::size_t i = 0; i < chooseTracerCount(on); ++i)
+    m_tracers.push_back(std::make_unique<BatchTracer>(m_pipeline, i % on.queueCount(), limits));
 }
 
 /// Appends paths after those of `destinations`.

@@ -1,13 +1,13 @@
 #pragma once
 // Path integrator on a GPU: the paths of the SIMD integrator, in a compute shader.
 
-#include "integrator/gpu/Lane.h"
+#include "integrator/gpu/BatchTracer.h"
 #include "integrator/simd/CameraRays.h"
 
 namespace fenestra::core::gpu {
 
 /// Limits that suit a device.
-LaneLimits chooseLimits(const Device& device);
+BatchLimits chooseLimits(const Device& device);
 
 class PathIntegrator {
 public:
@@ -15,17 +15,17 @@ public:
   /// (SceneTables). Throws DeviceError.
   PathIntegrator(std::shared_ptr<const Device> device, const SimdMedium& medium,
                  const SceneTables& scene, const CameraTable& camera, const CameraRays& cameraRays,
-                 const StopFlag& stop, const LaneLimits& limits);
+                 const StopFlag& stop, const BatchLimits& limits);
 
   /// Batches that can be traced at the same time, each by a thread of its own.
-  std::size_t laneCount() const { return m_lanes.size(); }
+  std::size_t tracerCount() const { return m_tracers.size(); }
 
   /// Traces all paths of source.fill(samples, maxCount), at most `maxPaths` at a time, and calls
   /// source.deliver(tile, tileSample, sample) for each. Returns false if `stop` became true before
   /// all had ended. Throws DeviceError.
   template <typename Source>
-  bool trace(std::size_t lane, Source& source, std::size_t maxPaths, Counters& counters) const {
-    Lane& device = *m_lanes[lane];
+  bool trace(std::size_t tracer, Source& source, std::size_t maxPaths, Counters& counters) const {
+    BatchTracer& device = *m_tracers[tracer];
     const std::size_t most = std::min(maxPaths, device.maxPaths());
     const auto samples = std::make_unique<CameraSamples>();
     std::vector<Destination> destinations;
@@ -57,7 +57,7 @@ private:
   PathSample makeSample(const PathResult& result, float row) const;
 
   Pipeline m_pipeline;
-  std::vector<std::unique_ptr<Lane>> m_lanes;
+  std::vector<std::unique_ptr<BatchTracer>> m_tracers;
   double m_nearDepth; ///< CameraTable::nearDepth
   const CameraRays& m_cameraRays;
   const StopFlag& m_stop;

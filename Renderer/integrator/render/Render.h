@@ -6,7 +6,7 @@
 
 #include "image/Film.h"
 #include "image/Tiles.h"
-#include "integrator/gpu/LaneLimits.h"
+#include "integrator/gpu/BatchLimits.h"
 #include "integrator/render/SamplePlan.h"
 #include "integrator/scalar/Counters.h"
 #include "integrator/scalar/MajorantGrid.h"
@@ -73,7 +73,7 @@ struct RenderSettings {
   std::uint64_t passSamples = 0; ///< per pass; 0: growing passes
   std::uint64_t passGrowth = 3;  ///< samples of a growing pass per sample before it
   double passSeconds = infinity; ///< limit of a pass's time, at the speed of the last one
-  std::optional<gpu::LaneLimits> laneLimits = {}; ///< of the GPU; none: as the device suggests
+  std::optional<gpu::BatchLimits> batchLimits = {}; ///< of the GPU; none: as the device suggests
   /// Tiles to render. The others stay as they are, so `noise` needs an onPassEnd that adds them.
   Shard shard = {};
 

@@ -51,8 +51,8 @@ Streams planStreams(const Tracer&, const Film& film) {
 }
 inline Streams planStreams(const gpu::PathIntegrator& tracer, const Film& film) {
   constexpr std::size_t least = std::size_t{1} << 14; // fewer leave a GPU idle
-  return {static_cast<int>(tracer.laneCount()),
-          std::max(least, film.pixelCount() / tracer.laneCount())};
+  return {static_cast<int>(tracer.tracerCount()),
+          std::max(least, film.pixelCount() / tracer.tracerCount())};
 }
 
 template <typename Tracer>
@@ -60,9 +60,9 @@ void traceStream(const Tracer& tracer, int, TileStream& stream, std::size_t maxP
                  Counters& counters) {
   tracer.trace(stream, maxPaths, counters);
 }
-inline void traceStream(const gpu::PathIntegrator& tracer, int lane, TileStream& stream,
+inline void traceStream(const gpu::PathIntegrator& tracer, int index, TileStream& stream,
                         std::size_t maxPaths, Counters& counters) {
-  tracer.trace(static_cast<std::size_t>(lane), stream, maxPaths, counters);
+  tracer.trace(static_cast<std::size_t>(index), stream, maxPaths, counters);
 }
 
 /// Pixels that need only one sample: their camera rays meet no medium, and the background is
@@ -111,7 +111,7 @@ auto traceGpu(const SceneView& scene, const RenderSettings& settings, const Stop
                                 settings.sampling == Sampling::stratified);
   const gpu::PathIntegrator integrator(device, simd.tracker.medium(), tables, simd.table,
                                        simd.cameraRays, stop,
-                                       settings.laneLimits.value_or(gpu::chooseLimits(*device)));
+                                       settings.batchLimits.value_or(gpu::chooseLimits(*device)));
   checkDevice(integrator,
               SimdPathIntegrator(simd.tracker, simd.shading, simd.table, simd.cameraRays, stop),
               scene.camera, Sampler(settings.sampling, settings.seed));

@@ -1,4 +1,4 @@
-#include "integrator/gpu/Lane.h"
+#include "integrator/gpu/BatchTracer.h"
 
 #include "base/Stopwatch.h"
 
@@ -24,7 +24,7 @@ void addBarrier(VkCommandBuffer commands, VkAccessFlags from, VkAccessFlags to) 
 
 } // namespace
 
-Lane::Lane(const Pipeline& pipeline, std::size_t queue, const LaneLimits& limits)
+BatchTracer::BatchTracer(const Pipeline& pipeline, std::size_t queue, const BatchLimits& limits)
     : m_pipeline(pipeline),
       m_queue(queue),
       m_limits(limits),
@@ -40,7 +40,7 @@ Lane::Lane(const Pipeline& pipeline, std::size_t queue, const LaneLimits& limits
   bindBuffers();
 }
 
-void Lane::bindBuffers() {
+void BatchTracer::bindBuffers() {
   const VkDevice device = m_pipeline.device().get();
   constexpr std::array<VkDescriptorPoolSize, 2> sizes = {
       {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, Pipeline::bindings - 2},
@@ -86,7 +86,7 @@ void Lane::bindBuffers() {
   vkUpdateDescriptorSets(device, Pipeline::bindings, writes.data(), 0, nullptr);
 }
 
-bool Lane::run(std::size_t count, const StopFlag& stop, Counters& counters) {
+bool BatchTracer::run(std::size_t count, const StopFlag& stop, Counters& counters) {
   auto* const work = static_cast<Work*>(m_work.mapped);
   const auto run = [&](auto&& record) { m_commands.run(m_queue, record); };
   *work = {};
@@ -105,14 +105,14 @@ bool Lane::run(std::size_t count, const StopFlag& stop, Counters& counters) {
   return true;
 }
 
-void Lane::recordBegin(VkCommandBuffer commands, std::size_t count) const {
+void BatchTracer::recordBegin(VkCommandBuffer commands, std::size_t count) const {
   const VkBufferCopy copy = {.size = count * sizeof(PathStart)};
   vkCmdCopyBuffer(commands, m_starts.get(), m_deviceStarts.get(), 1, &copy);
   // All threads are idle; this also discards the paths of a batch that was stopped.
   vkCmdFillBuffer(commands, m_states.get(), 0, VK_WHOLE_SIZE, 0);
 }
 
-void Lane::recordDispatch(VkCommandBuffer commands, std::size_t count) const {
+void BatchTracer::recordDispatch(VkCommandBuffer commands, std::size_t count) const {
   addBarrier(commands, VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_WRITE_BIT,
              VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, m_pipeline.get());
@@ -126,7 +126,7 @@ void Lane::recordDispatch(VkCommandBuffer commands, std::size_t count) const {
   addBarrier(commands, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT);
 }
 
-void Lane::recordEnd(VkCommandBuffer commands, std::size_t count) const {
+void BatchTracer::recordEnd(VkCommandBuffer commands, std::size_t count) const {
   addBarrier(commands, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_TRANSFER_READ_BIT);
   const VkBufferCopy copy = {.size = count * sizeof(PathResult)};
   vkCmdCopyBuffer(commands, m_deviceResults.get(), m_results.get(), 1, &copy);
@@ -134,14 +134,14 @@ void Lane::recordEnd(VkCommandBuffer commands, std::size_t count) const {
 }
 
 /// Keeps the time of a dispatch near 20 ms, so that displays stay responsive and stops are quick.
-void Lane::adaptSteps(double seconds) {
+void BatchTracer::adaptSteps(double seconds) {
   constexpr double target = 0.02;
   const double factor = std::clamp(target / std::max(seconds, 1e-4), 0.5, 2.0);
   const std::int32_t least = std::min(32, m_limits.maxSteps);
   m_steps = std::clamp(static_cast<std::int32_t>(m_steps * factor), least, m_limits.maxSteps);
 }
 
-void Lane::addCounts(Counters& counters) const {
+void BatchTracer::addCounts(Counters& counters) const {
   const Work& work = *static_cast<const Work*>(m_work.mapped);
   counters.collisions += work.counts[collisionCount];
   counters.lookups += work.counts[lookupCount];

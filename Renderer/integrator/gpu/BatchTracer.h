@@ -1,10 +1,10 @@
 #pragma once
-// Traces batches of paths on a device. Several lanes work at the same time, each on its own queue
-// where the device has several: while one lane's host thread adds samples to the film, the device
-// traces the paths of another. A path's sample depends on that path alone, so lanes and batches do
-// not affect the image.
+// Traces batches of paths on a device. Several tracers work at the same time, each on its own queue
+// where the device has several: while one tracer's host thread adds samples to the film, the device
+// traces the paths of another. A path's sample depends on that path alone, so tracers and batches
+// do not affect the image.
 
-#include "integrator/gpu/LaneLimits.h"
+#include "integrator/gpu/BatchLimits.h"
 #include "integrator/gpu/Pipeline.h"
 #include "integrator/scalar/Counters.h"
 #include "integrator/scalar/StopFlag.h"
@@ -19,10 +19,10 @@ struct PathResult {
   float normal[3], unused;
 };
 
-class Lane {
+class BatchTracer {
 public:
-  /// Non-owning: the pipeline must outlive the lane. Throws DeviceError.
-  Lane(const Pipeline& pipeline, std::size_t queue, const LaneLimits& limits);
+  /// Non-owning: the pipeline must outlive the tracer. Throws DeviceError.
+  BatchTracer(const Pipeline& pipeline, std::size_t queue, const BatchLimits& limits);
 
   std::size_t maxPaths() const { return m_limits.paths; }
   /// The next batch's paths, to be filled before run().
@@ -50,7 +50,7 @@ private:
 
   const Pipeline& m_pipeline;
   std::size_t m_queue;
-  LaneLimits m_limits;
+  BatchLimits m_limits;
   std::int32_t m_steps;
   Buffer m_starts, m_deviceStarts, m_results, m_deviceResults, m_states, m_work;
   Owned<VkDescriptorPool> m_descriptors;
