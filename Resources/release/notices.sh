@@ -3,7 +3,7 @@
 # (the Debian package of each of these).
 
 # Packages whose headers, or font, are compiled in.
-header_packages=(fonts-dejavu-core libeigen3-dev libvulkan-volk-dev nlohmann-json3-dev)
+header_packages=(fonts-dejavu-core libeigen3-dev libvulkan-dev libvulkan-volk-dev nlohmann-json3-dev)
 
 # find_packages: sets `package`.
 find_packages() {
