@@ -154,6 +154,38 @@ TEST(OrganMargin, PreservesLesionsAcrossTheCapsule) {
     }
 }
 
+/// A sheet of fluid or partial volume along the surface is removed, but no lesion that touches it.
+TEST(OrganMargin, RemovesSheetsAndPreservesLesionsBesideThem) {
+  const auto isInSheet = [](const Vec3& p) {
+    const double distance = computeDistance(p);
+    return p.x() > 0.5 * radii.x() && distance > -3.0 && distance < 1.5;
+  };
+  const auto addSheet = [&](Phantom& phantom) {
+    auto& voxels = std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
+    const Size3& size = phantom.label.grid.size;
+    for (std::int64_t i = 0; i < phantom.label.grid.voxelCount(); ++i) {
+      const Size3 voxel(i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y()));
+      if (isInSheet(phantom.label.grid.indexToWorld * voxel.cast<double>()))
+        voxels[static_cast<std::size_t>(i)] = 5;
+    }
+  };
+  Phantom phantom = makePhantom(10.0);
+  addSheet(phantom);
+  const OrganMargin margin = findOrganMargin(phantom.label, phantom.volume);
+  ASSERT_TRUE(margin.isApplied);
+  const Mask sheet = makeMask(phantom.label.grid, isInSheet);
+  double kept = 0.0;
+  for (std::size_t i = 0; i < sheet.voxels.size(); ++i)
+    kept += sheet.voxels[i] && margin.kept.voxels[i];
+  EXPECT_LT(kept, 0.2 * static_cast<double>(sheet.count));
+  for (const double value : {0.0, 400.0}) {
+    const Lesion lesion{{radii.x() - 7.0, 0.0, -4.0}, 10.0, value};
+    Phantom diseased = makePhantom(10.0, lesion);
+    addSheet(diseased);
+    EXPECT_LE(computeLoss(diseased, lesion), 0.05) << value;
+  }
+}
+
 TEST(OrganMargin, IsNotAppliedToSmallOrMixedSegments) {
   Phantom small = makePhantom(10.0, {}, 0.3);
   EXPECT_FALSE(findOrganMargin(small.label, small.volume).isApplied) << "nothing is 8 mm deep";

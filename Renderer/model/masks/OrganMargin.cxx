@@ -22,14 +22,14 @@ constexpr double mostBright = 1.0 / 3.0;  ///< of what is removed; more: cortex 
 constexpr double deviations = 3.5;        ///< robust standard deviations that belong to the tissue
 constexpr double leastDifference = 25.0;  ///< HU; differences within an organ
 constexpr double tested = 1.0;            ///< mm below the new surface, where it must be organ
-/// Lesions: radius, mm, of a ball that fits in, and the rim around it.
-constexpr double lesionRadius = 1.25, fatRadius = 4.0, lesionRim = 3.0;
+/// Lesions: radius, mm, of a ball that fits in, in those that extend far, in those of fat; rim.
+constexpr double lesionRadius = 1.25, plateRadius = 2.5, fatRadius = 4.0, lesionRim = 3.0;
 constexpr float leastSoft = -30.0F;     ///< HU; fat, lung and air are below
 constexpr double greatestLung = -500.0; ///< HU
 constexpr double lesionFraction = 0.6;  ///< of the range: partial volume around a lesion
-/// Centers of balls in lesions across the surface: volume, mm^3, to exclude noise; fraction inside;
-/// extent, mm. Neighboring organs have less than 0.05 inside; sheets extend farther, and larger
-/// lesions are thick inside, too.
+/// Centers of balls in thin lesions: volume, mm^3, to exclude noise; fraction inside; extent, mm.
+/// Neighboring organs have less than 0.05 inside; sheets extend farther, and larger lesions are
+/// thicker inside.
 constexpr double leastSize = 12.0, leastInside = 1.0 / 3.0, mostExtent = 20.0;
 constexpr double maxMoved = 12.0; ///< mm, measured
 
@@ -222,14 +222,13 @@ private:
       return static_cast<double>(m_medians[i]) > medians.median;
     };
     const auto isSoftInside = [&](std::size_t i) { return m_inside[i] && isSoft(i); };
-    addBodies(findCores(lesionRadius, isSoftInside), lesionRadius, lesions);
+    addBodies(findSmallParts(findCores(lesionRadius, isSoftInside)), lesionRadius, lesions);
+    addBodies(findCores(plateRadius, isSoftInside), plateRadius, lesions);
     for (const bool bright : {false, true}) {
       const auto isSoftNear = [&](std::size_t i) {
         return m_isNear[i] && isSoft(i) && isBrighter(i) == bright;
       };
-      Marks cores = findCores(lesionRadius, isSoftNear);
-      removeNeighbors(cores);
-      addBodies(cores, lesionRadius, lesions);
+      addBodies(findSmallParts(findCores(lesionRadius, isSoftNear)), lesionRadius, lesions);
     }
     const auto isOther = [&](std::size_t i) {
       return m_inside[i] && (!medians.contains(m_medians[i]) || !values.contains(m_values[i]));
@@ -260,44 +259,59 @@ private:
     return cores;
   }
 
-  /// Adds balls of `radius` mm around the cores, with a rim.
-  void addBodies(const Marks& cores, double radius, Marks& bodies) const {
-    const double most = findReach(radius) + lesionRim;
+  /// Adds balls of `radius` mm around the centers.
+  void addBalls(const Marks& centers, double radius, Marks& balls) const {
     const std::vector<float> away =
-        computeDistances(cores, m_grid, most + m_grid.spacing().maxCoeff());
+        computeDistances(centers, m_grid, radius + m_grid.spacing().maxCoeff());
     for (std::size_t i = 0; i < away.size(); ++i)
-      bodies[i] |= away[i] <= static_cast<float>(most);
+      balls[i] |= away[i] <= static_cast<float>(radius);
   }
 
-  /// Clears connected parts that are mostly outside, or extend far.
-  void removeNeighbors(Marks& cores) const {
-    Marks visited(cores.size());
+  /// Adds bodies with a rim, from their centers of balls of `radius` mm.
+  void addBodies(const Marks& cores, double radius, Marks& bodies) const {
+    addBalls(cores, findReach(radius) + lesionRim, bodies);
+  }
+
+  /// Centers of balls of `lesionRadius` without those whose connected balls are mostly outside, or
+  /// extend far, as neighboring organs and sheets do.
+  Marks findSmallParts(Marks cores) const {
+    Marks balls(cores.size());
+    addBalls(cores, findReach(lesionRadius), balls);
     std::vector<Size3> part;
     const auto visit = [&](const Size3& voxel, std::size_t i) {
-      if (cores[i] && !visited[i])
+      if (balls[i])
         part.push_back(voxel);
-      visited[i] = 1;
+      balls[i] = 0;
     };
     forEachVoxel(m_grid.size, [&](const Size3& voxel, std::size_t seed) {
       part.clear();
       visit(voxel, seed);
-      Size3 lower = voxel, upper = voxel;
-      double inside = 0.0;
       for (std::size_t k = 0; k < part.size(); ++k) {
-        const Size3 core = part[k];
-        lower = lower.cwiseMin(core);
-        upper = upper.cwiseMax(core);
-        inside += m_inside[linearIndex(core, m_grid.size)];
-        forEachNeighbor(core, m_grid.size,
+        const Size3 ball = part[k];
+        forEachNeighbor(ball, m_grid.size,
                         [&](const Size3& next, std::size_t i, int) { visit(next, i); });
       }
-      const Vec3 extent = (upper - lower).cast<double>().cwiseProduct(m_grid.spacing());
-      const double size = static_cast<double>(part.size()) * m_grid.spacing().prod();
-      if (size < leastSize || inside < leastInside * static_cast<double>(part.size()) ||
-          extent.maxCoeff() > mostExtent)
-        for (const Size3& core : part)
-          cores[linearIndex(core, m_grid.size)] = 0;
+      if (!isSmall(part, cores))
+        for (const Size3& ball : part)
+          cores[linearIndex(ball, m_grid.size)] = 0;
     });
+    return cores;
+  }
+
+  /// True if the cores in a part are at least a third inside, and not larger than lesions.
+  bool isSmall(const std::vector<Size3>& part, const Marks& cores) const {
+    Size3 lower = m_grid.size, upper = Size3::Zero();
+    double count = 0.0, inside = 0.0;
+    for (const Size3& voxel : part)
+      if (const std::size_t i = linearIndex(voxel, m_grid.size); cores[i]) {
+        lower = lower.cwiseMin(voxel);
+        upper = upper.cwiseMax(voxel);
+        count += 1.0;
+        inside += m_inside[i];
+      }
+    const Vec3 extent = (upper - lower).cast<double>().cwiseProduct(m_grid.spacing());
+    return count * m_grid.spacing().prod() >= leastSize && inside >= leastInside * count &&
+           extent.maxCoeff() <= mostExtent;
   }
 
   const Grid& m_grid;
