@@ -3,21 +3,9 @@
 namespace fenestra::core::testing {
 namespace {
 
-/// A combination of the matrix without clip, crop, surfaces and segments.
-Combination makeSimple(int index, VoxelFactor voxels, GridFactor grid, LightFactor light) {
-  Combination c;
-  c.index = index;
-  c.voxels = voxels;
-  c.grid = grid;
-  c.light = light;
-  c.g = 0.3;
-  c.albedo = AlbedoFactor::byScalar;
-  c.bounces = std::numeric_limits<std::uint64_t>::max();
-  return c;
-}
-
 Combination makePlane() {
-  Combination c = makeSimple(1, VoxelFactor::int16, GridFactor::rotated, LightFactor::directional);
+  Combination c =
+      makeSimpleCombination(1, VoxelFactor::int16, GridFactor::rotated, LightFactor::directional);
   c.view = ViewFactor::perspectiveInside;
   c.clip = ClipFactor::plane;
   c.edge = EdgeFactor::soft;
@@ -29,7 +17,8 @@ Combination makePlane() {
 }
 
 Combination makeCutaway() {
-  Combination c = makeSimple(2, VoxelFactor::uint16, GridFactor::thickSlices, LightFactor::map);
+  Combination c =
+      makeSimpleCombination(2, VoxelFactor::uint16, GridFactor::thickSlices, LightFactor::map);
   c.clip = ClipFactor::cutaway;
   c.g = 0.0;
   c.isHybrid = true;
@@ -39,8 +28,8 @@ Combination makeCutaway() {
 }
 
 Combination makeSurface() {
-  Combination c =
-      makeSimple(3, VoxelFactor::float32, GridFactor::shearedMirrored, LightFactor::rectangle);
+  Combination c = makeSimpleCombination(3, VoxelFactor::float32, GridFactor::shearedMirrored,
+                                        LightFactor::rectangle);
   c.view = ViewFactor::perspective;
   c.clip = ClipFactor::exactSurface;
   c.edge = EdgeFactor::softGhost;
@@ -51,7 +40,8 @@ Combination makeSurface() {
 }
 
 Combination makeTint() {
-  Combination c = makeSimple(4, VoxelFactor::int16, GridFactor::cubes, LightFactor::several);
+  Combination c =
+      makeSimpleCombination(4, VoxelFactor::int16, GridFactor::cubes, LightFactor::several);
   c.style = StyleFactor::thinDesaturated;
   c.segmentCount = 3;
   c.hasSoftSegments = true;
@@ -59,7 +49,8 @@ Combination makeTint() {
 }
 
 Combination makeMixture() {
-  Combination c = makeSimple(5, VoxelFactor::uint8, GridFactor::cubes, LightFactor::sphere);
+  Combination c =
+      makeSimpleCombination(5, VoxelFactor::uint8, GridFactor::cubes, LightFactor::sphere);
   c.view = ViewFactor::perspective;
   c.clip = ClipFactor::surface;
   c.edge = EdgeFactor::soft;
@@ -71,7 +62,8 @@ Combination makeMixture() {
 }
 
 Combination makeHole() {
-  Combination c = makeSimple(6, VoxelFactor::float32, GridFactor::fine, LightFactor::disk);
+  Combination c =
+      makeSimpleCombination(6, VoxelFactor::float32, GridFactor::fine, LightFactor::disk);
   c.clip = ClipFactor::hole;
   c.edge = EdgeFactor::ghost;
   c.style = StyleFactor::desaturated;
@@ -80,9 +72,10 @@ Combination makeHole() {
 }
 
 std::vector<GpuScene> makeScenes() {
-  Combination sky = makeSimple(0, VoxelFactor::uint8, GridFactor::cubes, LightFactor::sky);
+  Combination sky =
+      makeSimpleCombination(0, VoxelFactor::uint8, GridFactor::cubes, LightFactor::sky);
   Combination unscattered =
-      makeSimple(7, VoxelFactor::uint16, GridFactor::cubes, LightFactor::constant);
+      makeSimpleCombination(7, VoxelFactor::uint16, GridFactor::cubes, LightFactor::constant);
   sky.background = BackgroundFactor::environment;
   unscattered.bounces = 0;
   const std::pair<const char*, Combination> all[] = {{"sky", sky},
@@ -106,6 +99,19 @@ std::vector<GpuScene> makeScenes() {
 }
 
 } // namespace
+
+Combination makeSimpleCombination(int index, VoxelFactor voxels, GridFactor grid,
+                                  LightFactor light) {
+  Combination c;
+  c.index = index;
+  c.voxels = voxels;
+  c.grid = grid;
+  c.light = light;
+  c.g = 0.3;
+  c.albedo = AlbedoFactor::byScalar;
+  c.bounces = std::numeric_limits<std::uint64_t>::max();
+  return c;
+}
 
 const std::vector<GpuScene>& featureScenes() {
   static const std::vector<GpuScene> scenes = makeScenes();

@@ -50,6 +50,10 @@ struct GpuScene {
   RenderSettings settings;
 };
 
+/// A combination of the matrix without clip, crop, surfaces and segments.
+Combination makeSimpleCombination(int index, VoxelFactor voxels, GridFactor grid,
+                                  LightFactor light);
+
 /// Scenes that together have every feature of the shader.
 const std::vector<GpuScene>& featureScenes();
 const GpuScene& findFeatureScene(const std::string& name);

@@ -46,6 +46,32 @@ TEST(GpuFeatures, AreAllInTheScenes) {
   EXPECT_EQ(componentKinds.size(), 3U);
 }
 
+/// One kind of light at a time: the shader has loops of its own over lists of lights.
+class GpuLights : public ::testing::TestWithParam<LightFactor> {};
+
+TEST_P(GpuLights, AreThoseOfTheSimdIntegrator) {
+  Combination c = makeSimpleCombination(0, VoxelFactor::int16, GridFactor::cubes, GetParam());
+  MatrixScene made = makeMatrixScene(c);
+  made.settings.samples = 4;
+  const Film simd = made.fenestra.render(made.settings).film,
+             twin = renderTwin(made.fenestra, made.settings).film;
+  Rgb sum = Rgb::Zero();
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < simd.pixelCount(); ++i) {
+    const Rgb expected = simd.pixels()[i].mean, mean = twin.pixels()[i].mean;
+    sum += expected;
+    different += (mean - expected).abs().maxCoeff() > 1e-4 * (1.0 + expected.maxCoeff()) ? 1 : 0;
+  }
+  EXPECT_GT(sum.minCoeff(), 0.01 * static_cast<double>(simd.pixelCount()));
+  EXPECT_LE(different, simd.pixelCount() / 50) << "paths that rounding sends elsewhere";
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, GpuLights,
+                         ::testing::Values(LightFactor::constant, LightFactor::map,
+                                           LightFactor::directional, LightFactor::rectangle,
+                                           LightFactor::disk, LightFactor::sky, LightFactor::sphere,
+                                           LightFactor::several));
+
 /// Sizes of a render's parts: the device's work, and passes.
 struct Slicing {
   gpu::BatchLimits limits;

@@ -35,12 +35,12 @@ SceneTables::SceneTables(const SimdMedium& medium, const SimdShading& shading,
   features.wantNormals = shading.wantNormals ? 1 : 0;
   features.isStratified = isStratified ? 1 : 0;
   features.clipsCameraRays = !cameraRays.isUnclipped() && medium.clip.ghost == 0.0F ? 1 : 0;
+  setLights(shading); // first
   setVoxels(medium);
   setCells(medium);
   setFunctions(medium, shading);
   setLabels(medium, shading);
   setContext(medium);
-  setLights(shading);
   setMaps(shading);
   setCamera(camera);
   setClip(medium);
@@ -226,7 +226,7 @@ void SceneTables::setMaps(const SimdShading& shading) {
   }
 }
 
-/// Members in the order of Lights.inl.
+/// Lists and members in the order of Lights.inl.
 void SceneTables::setLights(const SimdShading& shading) {
   const LightTables<float>& lights = shading.lights;
   const auto three = [&](const auto& v) { append(std::array{v[0], v[1], v[2]}); };
@@ -235,22 +235,13 @@ void SceneTables::setLights(const SimdShading& shading) {
   numbers.constantBlue = lights.constant[2];
   features.hasSampledLights = shading.hasSampledLights ? 1 : 0;
   features.skyCount = static_cast<Int>(lights.skies.size());
-  numbers.skies = next();
   for (const auto& sky : lights.skies) {
     three(sky.up);
     three(sky.middle);
     three(sky.toTop);
     three(sky.toBottom);
   }
-  features.directionalCount = static_cast<Int>(lights.directionals.size());
-  numbers.directionals = next();
-  for (const auto& light : lights.directionals) {
-    append(light.pmf);
-    three(light.toward);
-    three(light.irradiance);
-  }
   features.areaCount = static_cast<Int>(lights.areas.size());
-  numbers.areas = next();
   for (const auto& light : lights.areas) {
     append(light.pmf);
     append(light.isDisk ? 1 : 0);
@@ -263,8 +254,13 @@ void SceneTables::setLights(const SimdShading& shading) {
     append(light.area);
     three(light.radiance);
   }
+  features.directionalCount = static_cast<Int>(lights.directionals.size());
+  for (const auto& light : lights.directionals) {
+    append(light.pmf);
+    three(light.toward);
+    three(light.irradiance);
+  }
   features.sphereCount = static_cast<Int>(lights.spheres.size());
-  numbers.spheres = next();
   for (const auto& light : lights.spheres) {
     append(light.pmf);
     three(light.center);

@@ -82,8 +82,9 @@ SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, con
     for (const PlacedEnvironment& environment : set.environments())
       if (environment.pmf > 0.0) // maps alone: constant and black ones are never sampled
         maps.emplace_back(environment.sampler, environment.pmf);
-  hasSampledLights = !lights.areas.empty() || !lights.directionals.empty() ||
-                     !lights.spheres.empty() || !maps.empty();
+  hasSampledLights = !maps.empty();
+  LightTables<float>::forEachSampled(
+      lights, [&](const auto& list) { hasSampledLights = hasSampledLights || !list.empty(); });
 }
 
 } // namespace fenestra::core

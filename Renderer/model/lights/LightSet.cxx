@@ -7,6 +7,21 @@ namespace {
 /// volume's center may be bright elsewhere.
 constexpr double minPmf = 0.05;
 
+// Irradiance at a point, of a surface that faces the light.
+using Tables = LightTables<double>;
+double estimateIrradiance(const Tables::PlacedDirectional& light, const Vec3&) {
+  return brightness(light.irradiance);
+}
+double estimateIrradiance(const Tables::PlacedArea& light, const Vec3& point) {
+  const Vec3 d = point - light.center;
+  const double cosine = std::max(0.0, light.normal.dot(d.normalized()));
+  return brightness(light.radiance) * light.area * cosine / d.squaredNorm();
+}
+double estimateIrradiance(const Tables::PlacedSphere& light, const Vec3& point) {
+  const double sine2 = std::min(1.0, light.radius2 / (point - light.center).squaredNorm());
+  return pi * brightness(light.radiance) * sine2;
+}
+
 } // namespace
 
 LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera,
@@ -72,21 +87,12 @@ void LightSet::computePmfs(const Vec3& center) {
     environment.pmf = pi * brightness(environment.sampler.mean());
     pmfs.push_back(&environment.pmf);
   }
-  for (auto& light : m_tables.directionals) {
-    light.pmf = brightness(light.irradiance);
-    pmfs.push_back(&light.pmf);
-  }
-  for (auto& light : m_tables.areas) {
-    const Vec3 d = center - light.center;
-    const double cosine = std::max(0.0, light.normal.dot(d.normalized()));
-    light.pmf = brightness(light.radiance) * light.area * cosine / d.squaredNorm();
-    pmfs.push_back(&light.pmf);
-  }
-  for (auto& light : m_tables.spheres) {
-    const double sine2 = std::min(1.0, light.radius2 / (center - light.center).squaredNorm());
-    light.pmf = pi * brightness(light.radiance) * sine2;
-    pmfs.push_back(&light.pmf);
-  }
+  Tables::forEachSampled(m_tables, [&](auto& list) {
+    for (auto& light : list) {
+      light.pmf = estimateIrradiance(light, center);
+      pmfs.push_back(&light.pmf);
+    }
+  });
   double sum = 0.0;
   for (const double* pmf : pmfs)
     sum += *pmf;

@@ -20,6 +20,14 @@ struct LightTables {
   std::vector<PlacedSky> skies;
   Color constant = Color::Zero(); ///< sum of all constant environments
 
+  /// Calls visit(list) for each list of lights that are sampled.
+  template <typename Tables, typename Visit>
+  static void forEachSampled(Tables& tables, const Visit& visit) {
+    visit(tables.directionals);
+    visit(tables.areas);
+    visit(tables.spheres);
+  }
+
   /// Converts the tables to another number type, relative to `origin`.
   template <typename To>
   LightTables<To> cast(const Point& origin) const {

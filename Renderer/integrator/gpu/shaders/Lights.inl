@@ -1,5 +1,16 @@
 // The lights of a scene: model/lights/LightLoops-inl.h and integrator/simd/LightSet-inl.h for one
 // path. Points and directions in local space.
+// Tables begin with the lights: skies, areas, directional lights and spheres.
+
+FORMULA Int findArea(Int i) {
+  return skyCount * skyWords + i * areaWords;
+}
+FORMULA Int findDirectional(Int i) {
+  return findArea(areaCount) + i * directionalWords;
+}
+FORMULA Int findSphere(Int i) {
+  return findDirectional(directionalCount) + i * sphereWords;
+}
 
 FORMULA PlacedDirectional loadDirectional(Int at) {
   PlacedDirectional light;
@@ -36,21 +47,21 @@ FORMULA LightSamples sampleLights(Float3 point, Float choice, UInt uBits, UInt v
   const Float u = toUniform(uBits);
   const Float v = toUniform(vBits);
   for (Int i = 0; i < areaCount; ++i) {
-    const Int at = scene.areas + i * areaWords;
+    const Int at = findArea(i);
     const Float pmf = loadFloat(at);
     if (choice <= pmf)
       return sampleLight(loadArea(at), point, u, v);
     choice = choice - pmf;
   }
   for (Int i = 0; i < directionalCount; ++i) {
-    const Int at = scene.directionals + i * directionalWords;
+    const Int at = findDirectional(i);
     const Float pmf = loadFloat(at);
     if (choice <= pmf)
       return sampleLight(loadDirectional(at), point, u, v);
     choice = choice - pmf;
   }
   for (Int i = 0; i < sphereCount; ++i) {
-    const Int at = scene.spheres + i * sphereWords;
+    const Int at = findSphere(i);
     const Float pmf = loadFloat(at);
     if (choice <= pmf)
       return sampleLight(loadSphere(at), point, u, v);
@@ -71,13 +82,13 @@ FORMULA LightSamples sampleLights(Float3 point, Float choice, UInt uBits, UInt v
 FORMULA Float3 findEmission(Float3 origin, Float3 direction, Float distance, Float scatterPdf) {
   Float3 sum = Float3(0.0F, 0.0F, 0.0F);
   for (Int i = 0; i < areaCount; ++i) {
-    const PlacedArea light = loadArea(scene.areas + i * areaWords);
+    const PlacedArea light = loadArea(findArea(i));
     const LightHits at = intersect(light, allLanes(), origin, direction, distance);
     if (at.hit)
       sum = sum + weighScattering(scatterPdf, at.pdf) * Float3(light.radiance);
   }
   for (Int i = 0; i < sphereCount; ++i) {
-    const PlacedSphere light = loadSphere(scene.spheres + i * sphereWords);
+    const PlacedSphere light = loadSphere(findSphere(i));
     const LightHits at = intersect(light, allLanes(), origin, direction, distance);
     if (at.hit)
       sum = sum + weighScattering(scatterPdf, at.pdf) * Float3(light.radiance);

@@ -5,7 +5,7 @@
 FORMULA Float3 evaluateSkies(Float3 direction) {
   Float3 sum = Float3(scene.constantRed, scene.constantGreen, scene.constantBlue);
   for (Int i = 0; i < skyCount; ++i) {
-    const Int at = scene.skies + i * skyWords;
+    const Int at = i * skyWords;
     PlacedSky sky;
     sky.up = loadFloat3(at);
     sky.middle = loadFloat3(at + 3);

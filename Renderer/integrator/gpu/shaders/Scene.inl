@@ -43,7 +43,6 @@ struct SceneNumbers {
   Int extinctions, albedos; ///< offsets of the first table of segments
 
   Real constantRed, constantGreen, constantBlue; ///< radiance of all constant environments
-  Int areas, directionals, spheres, skies;       ///< offsets of the first light
   Int maps;                                      ///< offset of the first environment map
 
   /// Label weights: last voxels, and offsets of the next brick; then offsets of their tables.
