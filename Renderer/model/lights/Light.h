@@ -1,7 +1,7 @@
 #pragma once
 // Light descriptions as plain data. Directions and lengths are in world space (mm, RAS) or in the
-// camera's frame; LightSet.h prepares lights for sampling. Light is a variant: to add a kind, put
-// sampling and pdf into formulas/Lights.inl (used by all integrators) and placement into LightSet.
+// camera's frame; LightSet.h prepares lights for sampling. Renderer/README.md says how to add a
+// kind.
 
 #include "base/Vector.h"
 
