@@ -123,6 +123,7 @@ private:
   // Use the ones above:
 #include "integrator/gpu/shaders/Lights.inl"
 #include "integrator/gpu/shaders/Path.inl"
+  static_assert(sizeof(PathState) / 3 * 4 <= stateBytes); // GLSL may align a Float3 to 16 bytes
 
   const SceneNumbers& scene;
   const std::vector<std::uint32_t>& m_words;

@@ -10,9 +10,6 @@ namespace {
 
 constexpr std::uint32_t groupSize = 64; ///< threads; local_size_x of PathTracer.comp
 
-/// Upper bound of the size of a PathState of Path.inl, bytes.
-constexpr VkDeviceSize stateSize = 192;
-
 void addBarrier(VkCommandBuffer commands, VkAccessFlags from, VkAccessFlags to) {
   constexpr VkPipelineStageFlags stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT |
                                           VK_PIPELINE_STAGE_TRANSFER_BIT |
@@ -35,7 +32,7 @@ BatchTracer::BatchTracer(const Pipeline& pipeline, std::size_t queue, const Batc
   m_deviceStarts = device.makeBuffer(m_starts.size, Memory::device);
   m_results = device.makeBuffer(limits.paths * sizeof(PathResult), Memory::readback);
   m_deviceResults = device.makeBuffer(m_results.size, Memory::device);
-  m_states = device.makeBuffer(limits.threads * stateSize, Memory::device);
+  m_states = device.makeBuffer(limits.threads * VkDeviceSize{stateBytes}, Memory::device);
   m_work = device.makeBuffer(sizeof(Work), Memory::readback);
   bindBuffers();
 }

@@ -6,6 +6,9 @@ struct PathStart {
   UInt start, key, number; ///< Sampler::Stream, and the sample's index in it
 };
 
+/// Bytes reserved for a thread's PathState.
+CONSTANT Int stateBytes = 192;
+
 /// Words of a table of segments, and of each kind of light.
 CONSTANT Int tableWords = 7;
 CONSTANT Int bsdfWords = 10;
