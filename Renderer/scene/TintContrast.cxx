@@ -31,30 +31,37 @@ Rgb reduceToGamut(const Lab& lab) {
   return withChroma(low).max(0.0).min(maxReflectance);
 }
 
-/// Decrease of L* of the context at the edge: where it faces the light, and in a groove that the
-/// focus shades. These values and the next ones were fitted by hand to mean colors 3 to 8 pixels
-/// from the edges of eight foci (abdomen, torso; AppearanceBenchmark) with the lights of an
-/// operating theater, a wet coat, natural colors and the film tone curve.
-constexpr std::array contextShading = {-3.0, 4.0};
+// Colors at the edge of the focus in an image, fitted by hand to the mean colors 3 to 8 pixels from
+// the edges of eleven foci (abdomen, torso, knee; AppearanceBenchmark) with the lights of an
+// operating theater, a wet coat, natural colors and the film tone curve.
 
-/// Lightness of a medium at the edge, as it appears in an image. Shadows and specular reflections
-/// reduce lightness differences.
+/// Decrease of L* of the context where it faces the light, and in a groove that the focus shades.
+constexpr std::array contextShading = {-2.0, 8.0};
+
+/// Lightness of the focus: shadows and specular reflections reduce differences.
 double toImageLightness(double L) {
-  return 14.0 + 0.73 * L;
+  return 24.0 + 0.62 * L;
 }
 
-/// Factor of the chroma in an image.
+/// Factor of the focus's chroma: the brighter, the more of it the tone curve removes.
 double toImageSaturation(double L) {
-  return 0.89 * toImageLightness(L) / std::max(L, 1.0);
+  return 1.3 - 0.009 * L;
 }
 
-/// Linear color of a medium at the edge, as it appears in an image.
-Rgb toImageColor(const Rgb& reflectance, double shade) {
+/// Linear color of the focus, as it appears in an image.
+Rgb toImageFocus(const Rgb& reflectance) {
   const Lab lab = toLab(reflectance);
   const double saturation = toImageSaturation(lab.L);
-  return toLinear({toImageLightness(lab.L) - shade, saturation * lab.a, saturation * lab.b})
+  return toLinear({toImageLightness(lab.L), saturation * lab.a, saturation * lab.b})
       .max(0.0)
       .min(1.0);
+}
+
+/// Linear color of the context, as it appears in an image. The cut faces the lights, and its colors
+/// are mixtures of more tissues than the interface has.
+Rgb toImageContext(const Rgb& reflectance, double shade) {
+  const Lab lab = toLab(reflectance);
+  return toLinear({44.0 + 0.4 * lab.L - shade, lab.a, lab.b}).max(0.0).min(1.0);
 }
 
 /// Albedo of a component as a function of the scalar.
@@ -171,7 +178,7 @@ Rgb adjustFocus(const Rgb& reflectance, const ColorAdjustment& adjustment) {
 }
 
 double contrastScore(const Contrast& contrast) {
-  constexpr double normal = 22.0, colorBlind = 13.2, lightness = 8.8;
+  constexpr double normal = 25.0, colorBlind = 15.0, lightness = 10.0;
   return 0.25 * (std::min(1.0, contrast.deltaE[0] / normal) +
                  std::min(1.0, contrast.deltaE[1] / colorBlind) +
                  std::min(1.0, contrast.deltaE[2] / colorBlind) +
@@ -182,7 +189,7 @@ Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const Interf
   const Rgb focus = adjustFocus(colors.focus, adjustment),
             context = adjustContext(colors.context, adjustment);
   const auto measure = [&](double shade) {
-    return measureContrast(toImageColor(focus, 0.0), toImageColor(context, shade), deltaE76);
+    return measureContrast(toImageFocus(focus), toImageContext(context, shade), deltaE76);
   };
   return std::min(
       measure(contextShading[0]), measure(contextShading[1]),
@@ -191,7 +198,7 @@ Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const Interf
 
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable) {
-  constexpr double minSaturation = 0.4, maxShift = 25.0, maxAccent = 0.6;
+  constexpr double minSaturation = 0.4, maxShift = 30.0, maxAccent = 0.6;
   const bool isFocusAdjustable = adjustable == Adjustable::both;
   ColorAdjustment start{.contextSaturation = context.saturation.value_or(1.0),
                         .contextLightness = context.lightness.value_or(0.0)};

@@ -28,9 +28,9 @@ struct AccentColor {
   const char* name;
   std::uint32_t color; ///< sRGB, 0xrrggbb
 };
-inline constexpr std::array accentColors = {AccentColor{"yellow", 0xe3bf71},
-                                            AccentColor{"ice", 0xbfe6f2},
-                                            AccentColor{"dark red", 0x712223}};
+inline constexpr std::array accentColors = {
+    AccentColor{"yellow", 0xe3bf71}, AccentColor{"ice", 0xbfe6f2}, AccentColor{"blue", 0x5b93d6},
+    AccentColor{"dark red", 0x712223}};
 
 /// Applies the adjustment to a linear reflected color. The result is at most maxReflectance; its
 /// chroma is reduced where it would leave the display gamut. The focus's chroma in an image does
@@ -47,7 +47,7 @@ struct InterfaceColors {
 /// Contrast relative to the target, 0 to 1. It is the mean of four ratios, each at most 1. The
 /// targets are a CIELAB difference of 20 for normal vision, 12 for each of the two common kinds of
 /// color blindness, and 8 in lightness, which survives grayscale printing. Each target is raised by
-/// a tenth, since measureAdjustedContrast() is approximate.
+/// a quarter, since measureAdjustedContrast() is approximate.
 double contrastScore(const Contrast& contrast);
 /// The search stops at this score: the remaining difference is invisible.
 inline constexpr double sufficientScore = 0.995;
@@ -62,7 +62,7 @@ enum class Adjustable { nothing, context, both };
 
 /// Finds the adjustment whose score, as the mean over the interface area, reaches sufficientScore,
 /// or the best within the limits. In this order, each only as far as needed: the context's
-/// saturation falls from the library's to 0.4; the focus becomes darker or lighter by at most 25;
+/// saturation falls from the library's to 0.4; the focus becomes darker or lighter by at most 30;
 /// it is blended with an accent color by at most 0.6. `context`: members that it sets stay fixed.
 /// If the focus is not adjustable, the context may become gray. Without `colors`, nothing is
 /// adjusted.
