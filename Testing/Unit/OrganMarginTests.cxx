@@ -71,6 +71,15 @@ Phantom makePhantom(double noise, const std::optional<Lesion>& lesion = {}, doub
   return phantom;
 }
 
+/// Sets the volume to a value, HU, at the points where isWithin(point).
+void fillWhere(Phantom& phantom, std::int16_t value, const auto& isWithin) {
+  const Mask within = makeMask(phantom.volume.grid, isWithin);
+  auto& voxels = std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
+  for (std::size_t i = 0; i < voxels.size(); ++i)
+    if (within.voxels[i])
+      voxels[i] = value;
+}
+
 /// Fraction of the voxels with a face on the mask's surface in which the organ is less than half.
 double computeForeignSurface(const Mask& mask, double scale = 1.0) {
   double foreign = 0.0, all = 0.0;
@@ -160,17 +169,9 @@ TEST(OrganMargin, RemovesSheetsAndPreservesLesionsBesideThem) {
     const double distance = computeDistance(p);
     return p.x() > 0.5 * radii.x() && distance > -3.0 && distance < 1.5;
   };
-  const auto addSheet = [&](Phantom& phantom) {
-    auto& voxels = std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
-    const Size3& size = phantom.label.grid.size;
-    for (std::int64_t i = 0; i < phantom.label.grid.voxelCount(); ++i) {
-      const Size3 voxel(i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y()));
-      if (isInSheet(phantom.label.grid.indexToWorld * voxel.cast<double>()))
-        voxels[static_cast<std::size_t>(i)] = 5;
-    }
-  };
+  constexpr std::int16_t fluid = 5; // HU
   Phantom phantom = makePhantom(10.0);
-  addSheet(phantom);
+  fillWhere(phantom, fluid, isInSheet);
   const OrganMargin margin = findOrganMargin(phantom.label, phantom.volume);
   ASSERT_TRUE(margin.isApplied);
   const Mask sheet = makeMask(phantom.label.grid, isInSheet);
@@ -181,7 +182,7 @@ TEST(OrganMargin, RemovesSheetsAndPreservesLesionsBesideThem) {
   for (const double value : {0.0, 400.0}) {
     const Lesion lesion{{radii.x() - 7.0, 0.0, -4.0}, 10.0, value};
     Phantom diseased = makePhantom(10.0, lesion);
-    addSheet(diseased);
+    fillWhere(diseased, fluid, isInSheet);
     EXPECT_LE(computeLoss(diseased, lesion), 0.05) << value;
   }
 }
@@ -204,15 +205,10 @@ TEST(OrganMargin, IsNotAppliedToSmallOrMixedSegments) {
 TEST(OrganMargin, BonesRemainWhole) {
   const auto isApplied = [](const auto& isBone) {
     Phantom phantom = makePhantom(10.0);
-    auto& voxels = std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
-    for (std::int64_t i = 0; i < phantom.label.grid.voxelCount(); ++i) {
-      const Size3& size = phantom.label.grid.size;
-      const Size3 voxel(i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y()));
-      const Vec3 p = phantom.label.grid.indexToWorld * voxel.cast<double>();
-      if (const double distance = computeDistance(p);
-          distance > -3.0 && distance < 1.0 && isBone(p))
-        voxels[static_cast<std::size_t>(i)] = 500;
-    }
+    fillWhere(phantom, 500, [&](const Vec3& p) {
+      const double distance = computeDistance(p);
+      return distance > -3.0 && distance < 1.0 && isBone(p);
+    });
     return findOrganMargin(phantom.label, phantom.volume).isApplied;
   };
   EXPECT_FALSE(isApplied([](const Vec3&) { return true; }));

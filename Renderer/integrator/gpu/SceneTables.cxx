@@ -35,7 +35,7 @@ SceneTables::SceneTables(const SimdMedium& medium, const SimdShading& shading,
   features.wantNormals = shading.wantNormals ? 1 : 0;
   features.isStratified = isStratified ? 1 : 0;
   features.clipsCameraRays = !cameraRays.isUnclipped() && medium.clip.ghost == 0.0F ? 1 : 0;
-  setLights(shading); // first
+  setLights(shading); // first: Lights.inl expects them at 0
   setVoxels(medium);
   setCells(medium);
   setFunctions(medium, shading);

@@ -22,8 +22,10 @@ constexpr double mostBright = 1.0 / 3.0;  ///< of what is removed; more: cortex 
 constexpr double deviations = 3.5;        ///< robust standard deviations that belong to the tissue
 constexpr double leastDifference = 25.0;  ///< HU; differences within an organ
 constexpr double tested = 1.0;            ///< mm below the new surface, where it must be organ
-/// Lesions: radius, mm, of a ball that fits in, in those that extend far, in those of fat; rim.
-constexpr double lesionRadius = 1.25, plateRadius = 2.5, fatRadius = 4.0, lesionRim = 3.0;
+/// Radius, mm, of a ball that fits into lesions: those up to `mostExtent`, larger ones, and those
+/// of fat or air.
+constexpr double lesionRadius = 1.25, largeRadius = 2.5, fatRadius = 4.0;
+constexpr double lesionRim = 3.0;       ///< mm, around a lesion
 constexpr float leastSoft = -30.0F;     ///< HU; fat, lung and air are below
 constexpr double greatestLung = -500.0; ///< HU
 constexpr double lesionFraction = 0.6;  ///< of the range: partial volume around a lesion
@@ -223,7 +225,7 @@ private:
     };
     const auto isSoftInside = [&](std::size_t i) { return m_inside[i] && isSoft(i); };
     addBodies(findSmallParts(findCores(lesionRadius, isSoftInside)), lesionRadius, lesions);
-    addBodies(findCores(plateRadius, isSoftInside), plateRadius, lesions);
+    addBodies(findCores(largeRadius, isSoftInside), largeRadius, lesions);
     for (const bool bright : {false, true}) {
       const auto isSoftNear = [&](std::size_t i) {
         return m_isNear[i] && isSoft(i) && isBrighter(i) == bright;
