@@ -8,7 +8,7 @@ between=VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT # also b
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 status=0
-# The layer leaks memory in places that no suppression names; the other tests of the GPU look for our leaks.
+# The layer keeps memory of its own. GpuTests looks for leaks of the same renders, without the layer.
 export ASAN_OPTIONS=${ASAN_OPTIONS:+$ASAN_OPTIONS:}detect_leaks=0
 VK_LOADER_DEBUG=layer VK_INSTANCE_LAYERS=$layer \
   VK_LAYER_ENABLES="VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT:$between" \
