@@ -103,6 +103,10 @@ bool BatchTracer::run(std::size_t count, const StopFlag& stop, Counters& counter
 }
 
 void BatchTracer::recordBegin(VkCommandBuffer commands, std::size_t count) const {
+  // The batch before has ended, and the host has waited for it. The barrier says so once more: the
+  // validation layer sometimes loses such a wait when threads share a queue.
+  addBarrier(commands, VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+             VK_ACCESS_TRANSFER_WRITE_BIT);
   const VkBufferCopy copy = {.size = count * sizeof(PathStart)};
   vkCmdCopyBuffer(commands, m_starts.get(), m_deviceStarts.get(), 1, &copy);
   // All threads are idle; this also discards the paths of a batch that was stopped.
