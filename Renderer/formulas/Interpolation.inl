@@ -19,6 +19,14 @@ FORMULA Float interpolate(Float v00, Float v10, Float v01, Float v11, Float x, F
   return lerp(lerp(v00, v10, x), lerp(v01, v11, x), y);
 }
 
+/// Weight of a segment's color where segments meet, before division by the sum of all. `fraction`:
+/// its label weight, which rises within about two voxels. Light enters an organ less deep than
+/// that: a mean by label weight would show its neighbors' colors on all of its surface. The power
+/// of 16 lets colors change within a tenth of that width.
+FORMULA Float colorWeight(Float fraction) {
+  return square(square(square(square(fraction))));
+}
+
 /// Sobel's kernel (Field::sobelGradient) along one axis, interpolated: weights of four lattice
 /// points from `first` on, all inside the lattice, of which the last one repeats if the axis has
 /// fewer.

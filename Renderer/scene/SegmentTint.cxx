@@ -119,15 +119,6 @@ std::vector<bool> markFocus(const Segmentation& segmentation, const NamedMateria
   return isFocus;
 }
 
-/// Makes the weights of a smoothed part 1 at its surface, where the indicator is 1/2 and the color
-/// would be mixed with the context's, and 0 from the indicator 0.3 on: half a standard deviation of
-/// the smoothing beyond the surface.
-void saturate(Mask& mask) {
-  const int most = mask.maxValue;
-  for (std::uint8_t& voxel : mask.voxels)
-    voxel = static_cast<std::uint8_t>(std::clamp((10 * voxel - 3 * most) / 2, 0, most));
-}
-
 /// True if no voxel can belong to both parts: all their segments are in one layer.
 bool areExclusive(const TintPart& a, const TintPart& b, const std::vector<SegmentInfo>& segments) {
   if (a.segments.empty() || b.segments.empty())
@@ -213,11 +204,11 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& input,
                                                    isFocus[i], plan, segmentation.source());
       segments[{component, all[i].medium.priority}].push_back(i);
     }
-  const bool canSaturate = isTintOnly(plan); // media stay inside their segments
+  const bool canPrecede = isTintOnly(plan); // media stay inside their segments
   for (auto& [key, indices] : segments) {
     const auto& [component, priority] = key;
     plan.parts.push_back(
-        {std::move(indices), priority, component, canSaturate && plan.isFocus[component]});
+        {std::move(indices), priority, component, canPrecede && plan.isFocus[component]});
   }
   raiseFocus(plan.parts, segmentation.segments());
   if (skin && skin->count > 0 && !hasSkin(all, *hasVoxels)) {
@@ -240,8 +231,7 @@ LabelWeights computeLabelWeights(const Handle<SegmentsInput>& input,
   std::optional<Grid> labels; // of the preceding parts
   const auto partAt = [&](std::size_t number) -> LabelWeights::Part {
     const TintPart& part = parts[number];
-    // A neighbor of equal priority would take part of the saturated focus, as deep as labels are
-    // smoothed.
+    // Smoothed parts overlap: a neighbor of equal priority would color part of the focus's surface.
     const int priority = 2 * part.priority + (part.isFocus ? 1 : 0);
     if (part.segments.empty())
       return {resampleMask(*skin, labels.value_or(skin->grid), volume), priority, part.component};
@@ -249,8 +239,6 @@ LabelWeights computeLabelWeights(const Handle<SegmentsInput>& input,
     for (const std::size_t i : part.segments)
       segments.push_back(segmentation.segments()[i]);
     Mask mask = segmentation.makeMask(segments, volume, {.margins = {}, .smoothing = smoothing});
-    if (part.isFocus)
-      saturate(mask);
     labels = mask.grid;
     return {std::move(mask), priority, part.component};
   };

@@ -166,15 +166,21 @@ private:
   double styleFactor(const Vec3& point) const {
     return isStyled(point) ? m_scene.style->extinction : 1.0;
   }
-  /// Albedo of a component; for a tint the mean over all, weighted by their label weights.
+  /// Albedo of a component; for a tint the mean over all, by the 16th power of their label
+  /// weights.
   Rgb albedo(std::size_t number, const Vec3& point) const {
     const double scalar = m_medium.scalar(point);
     Rgb own = evaluate(m_components[number].transfer.albedo, scalar);
     if (m_segments && !isMixed()) {
       const Segments::Weights fractions = m_segments->at(point);
       own.setZero();
-      for (std::size_t c = 0; c < m_scene.components->components.size(); ++c)
-        own += fractions[c] * evaluate(m_scene.components->components[c].transfer.albedo, scalar);
+      double total = 0.0;
+      for (std::size_t c = 0; c < m_scene.components->components.size(); ++c) {
+        const double weight = std::pow(fractions[c], 16.0);
+        own += weight * evaluate(m_scene.components->components[c].transfer.albedo, scalar);
+        total += weight;
+      }
+      own /= total;
     }
     if (!isStyled(point))
       return own;

@@ -29,11 +29,14 @@ HWY_INLINE Float3 evalMediumAlbedo(const SimdShading& shading, LaneMask which, c
   if (!shading.tint)
     return evalAlbedo(shading.albedos[0], scalar);
   Float3 sum(0.0F, 0.0F, 0.0F);
+  Float total = 0.0F;
   LaneLabelWeights(*shading.tint, index)
       .forEach(which, [&](LaneMask lanes, Int components, Float fraction) {
-        sum = sum + fraction * evalComponentAlbedo(shading, lanes, components, scalar);
+        const Float weight = colorWeight(fraction);
+        sum = sum + weight * evalComponentAlbedo(shading, lanes, components, scalar);
+        total = total + weight;
       });
-  return sum;
+  return zeroUnless(which, 1.0F / total) * sum;
 }
 
 /// ContextStyle::desaturate, applied outside the focus.

@@ -24,15 +24,19 @@ public:
   TintField(const Tint& tint, const Grid& volume)
       : m_tint(tint), m_toWeights(tint.weights->grid().worldToIndex * volume.indexToWorld) {}
 
-  /// Mean albedo of the components at a point (the volume's index space), by label weight.
-  /// `transferAlbedo`: the transfer function's albedo there.
+  /// Mean albedo of the components at a point (the volume's index space), by colorWeight() of their
+  /// label weights. `transferAlbedo`: the transfer function's albedo there.
   Rgb albedo(const Vec3& index, double scalar, const Rgb& transferAlbedo) const {
     Rgb sum = Rgb::Zero();
-    m_tint.weights->forEachWeight(m_toWeights * index, [&](std::uint8_t component, double weight) {
-      const std::optional<ColorFunction>& albedo = m_tint.albedo[component];
-      sum += weight * (albedo ? Rgb((*albedo)(scalar)) : transferAlbedo);
-    });
-    return sum;
+    double total = 0.0;
+    m_tint.weights->forEachWeight(
+        m_toWeights * index, [&](std::uint8_t component, double fraction) {
+          const std::optional<ColorFunction>& albedo = m_tint.albedo[component];
+          const double weight = scalar::colorWeight(fraction);
+          sum += weight * (albedo ? Rgb((*albedo)(scalar)) : transferAlbedo);
+          total += weight;
+        });
+    return sum / total;
   }
 
 private:

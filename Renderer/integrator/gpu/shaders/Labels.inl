@@ -166,8 +166,13 @@ FORMULA Float3 evalAlbedoAt(Float3 index, Int component, Float scalar) {
   Float3 albedo = Float3(0.0F, 0.0F, 0.0F);
   if (componentKind == tinted) {
     LabelCursor cursor = findLabels(scene.bricks, index);
-    while (nextLabel(cursor))
-      albedo = albedo + cursor.fraction * evalAlbedo(cursor.component, scalar);
+    Float total = 0.0F;
+    while (nextLabel(cursor)) {
+      const Float weight = colorWeight(cursor.fraction);
+      albedo = albedo + weight * evalAlbedo(cursor.component, scalar);
+      total = total + weight;
+    }
+    albedo = 1.0F / total * albedo;
   } else {
     albedo = evalAlbedo(component, scalar);
   }
