@@ -159,7 +159,9 @@ TEST_F(MaterialsCommand, FilesAndChangesOverrideTheLibrary) {
                R"({"version": 1, "materials": {"green": {"albedo": [0, 1, 0]}},
                    "segments": [{"match": {"names": ["*bone*"]}, "material": "green"}]})");
   const auto albedo = [&](const Arguments& more) {
-    const Image image = renderImage(makeArguments(more), folder.path());
+    Arguments arguments = makeArguments({"--focus", "A", "--context-saturation", "1"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Image image = renderImage(arguments, folder.path());
     const auto mean = [&](const char* name) {
       const Plane& plane = image.channels.at(name);
       return std::accumulate(plane.begin(), plane.end(), 0.0F);
