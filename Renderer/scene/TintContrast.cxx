@@ -33,7 +33,8 @@ Rgb reduceToGamut(const Lab& lab) {
 
 // Colors at the edge of the focus in an image, fitted by hand to the mean colors 3 to 8 pixels from
 // the edges of eleven foci (abdomen, torso, knee; AppearanceBenchmark) with the lights of an
-// operating theater, a wet coat, natural colors and the film tone curve.
+// operating theater, a wet coat, natural colors and the film tone curve. The fit is older than
+// colorWeight(): thin and dark foci now differ more from their surroundings than it predicts.
 
 /// Decrease of L* of the context where it faces the light, and in a groove that the focus shades.
 constexpr std::array contextShading = {-2.0, 8.0};

@@ -103,8 +103,8 @@ bool BatchTracer::run(std::size_t count, const StopFlag& stop, Counters& counter
 }
 
 void BatchTracer::recordBegin(VkCommandBuffer commands, std::size_t count) const {
-  // The batch before has ended, and the host has waited for it. The barrier says so once more: the
-  // validation layer sometimes loses such a wait when threads share a queue.
+  // The host has waited for the batch before. The barrier makes the commands correct without that
+  // wait, too: once in a while the validation layer reported it as missing, with several threads.
   addBarrier(commands, VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_SHADER_WRITE_BIT,
              VK_ACCESS_TRANSFER_WRITE_BIT);
   const VkBufferCopy copy = {.size = count * sizeof(PathStart)};

@@ -72,7 +72,7 @@ public:
 private:
   using Lengths = std::array<std::int64_t, maxValue + 1>; ///< per step
 
-  /// Densities of a line over 1, 2, ... steps: a division takes longer than all else of a line.
+  /// Density of a line over 0 (unused), 1, 2, ... steps, to avoid a division per line.
   static std::vector<std::int64_t> divideUnit() {
     std::vector<std::int64_t> densities(maxValue + 1);
     for (std::int64_t steps = 1; steps <= maxValue; ++steps)
@@ -123,13 +123,13 @@ void addCell(const Cell& cell, LevelLengths& lengths) {
       changes.begin());
   const std::size_t step = 1 << along, a = 1 << (along + 1) % 3, b = 1 << (along + 2) % 3;
   constexpr double nearer = 0.7886751345948129;               // Gauss, 2 points
-  constexpr int bits = 16, one = LevelLengths::steps << bits; // integers are four times as fast
-  constexpr int both = static_cast<int>(nearer * nearer * one + 0.5),
-                either = static_cast<int>(nearer * (1.0 - nearer) * one + 0.5),
-                none = one - both - 2 * either;
+  constexpr int bits = 16, one = LevelLengths::steps << bits; // fixed point
+  constexpr int nearNear = static_cast<int>(nearer * nearer * one + 0.5),
+                nearFar = static_cast<int>(nearer * (1.0 - nearer) * one + 0.5),
+                farFar = one - nearNear - 2 * nearFar;
   const auto interpolate = [&](std::size_t corner) {
-    return (both * cell[corner] + either * (cell[corner ^ a] + cell[corner ^ b]) +
-            none * cell[corner ^ a ^ b] + (1 << (bits - 1))) >>
+    return (nearNear * cell[corner] + nearFar * (cell[corner ^ a] + cell[corner ^ b]) +
+            farFar * cell[corner ^ a ^ b] + (1 << (bits - 1))) >>
            bits;
   };
   for (const std::size_t corner : {std::size_t{0}, a, b, a + b})
@@ -151,14 +151,14 @@ public:
         m_volumeSize(volume.size.cast<double>()),
         m_toVolume(volume.worldToIndex * smooth.grid.indexToWorld) {}
 
-  /// Of the smoothed mask. `values`: replacements of its voxel values.
+  /// Lengths inside the smoothed mask. `values`: replacements of its voxel values.
   LevelLengths measureLengths(const VoxelValues& values) const {
     return addRows(LevelLengths(), [&](const Rows& rows, const Range& range, LevelLengths& sum) {
       addCells(rows, range, values, sum);
     });
   }
 
-  /// The labels' number of lines, before they were smoothed.
+  /// Length inside the original labels, in lines, comparable to LevelLengths::findLength().
   double measureLabels() const {
     struct Eighths {
       std::int64_t count = 0; ///< of labels: two of the eight voxels of a cell make a line
