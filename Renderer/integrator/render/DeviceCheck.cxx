@@ -58,7 +58,7 @@ bool areAlike(const PathSample& a, const PathSample& b) {
 
 } // namespace
 
-void checkDevice(const gpu::PathIntegrator& device, const SimdPathIntegrator& simd,
+void checkDevice(const gpu::DeviceIntegrator& device, const SimdPathIntegrator& simd,
                  const Camera& camera, const Sampler& sampler) {
   ProbeSource onDevice(camera.width(), camera.height(), sampler), onCpu = onDevice;
   Counters ignored;

@@ -3,14 +3,14 @@
 // random numbers. Results are equal up to rounding, except where rounding changes a decision along
 // a path. If a driver has compiled the shader wrongly, most differ.
 
-#include "integrator/gpu/PathIntegrator.h"
+#include "integrator/gpu/DeviceIntegrator.h"
 #include "integrator/simd/PathIntegrator.h"
 
 namespace fenestra::core {
 
 /// Throws gpu::DeviceError if fewer than half of the probes that collide agree. Returns at once if
 /// stopped.
-void checkDevice(const gpu::PathIntegrator& device, const SimdPathIntegrator& simd,
+void checkDevice(const gpu::DeviceIntegrator& device, const SimdPathIntegrator& simd,
                  const Camera& camera, const Sampler& sampler);
 
 } // namespace fenestra::core

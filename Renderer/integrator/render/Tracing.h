@@ -2,7 +2,7 @@
 // The integrators as tracers of a pass's streams, and which of them renders a scene.
 
 #include "base/InstructionSets.h"
-#include "integrator/gpu/PathIntegrator.h"
+#include "integrator/gpu/DeviceIntegrator.h"
 #include "integrator/render/DeviceCheck.h"
 #include "integrator/render/Render.h"
 #include "integrator/render/TileStream.h"
@@ -49,7 +49,7 @@ Streams planStreams(const Tracer&, const Film& film) {
   return {threads,
           std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)))};
 }
-inline Streams planStreams(const gpu::PathIntegrator& tracer, const Film& film) {
+inline Streams planStreams(const gpu::DeviceIntegrator& tracer, const Film& film) {
   constexpr std::size_t least = std::size_t{1} << 14; // fewer leave a GPU idle
   return {static_cast<int>(tracer.tracerCount()),
           std::max(least, film.pixelCount() / tracer.tracerCount())};
@@ -60,7 +60,7 @@ void traceStream(const Tracer& tracer, int, TileStream& stream, std::size_t maxP
                  Counters& counters) {
   tracer.trace(stream, maxPaths, counters);
 }
-inline void traceStream(const gpu::PathIntegrator& tracer, int index, TileStream& stream,
+inline void traceStream(const gpu::DeviceIntegrator& tracer, int index, TileStream& stream,
                         std::size_t maxPaths, Counters& counters) {
   tracer.trace(static_cast<std::size_t>(index), stream, maxPaths, counters);
 }
@@ -109,9 +109,9 @@ auto traceGpu(const SceneView& scene, const RenderSettings& settings, const Stop
   const SimdScene simd(scene, settings, stop);
   const gpu::SceneTables tables(simd.tracker.medium(), simd.shading, simd.table, simd.cameraRays,
                                 settings.sampling == Sampling::stratified);
-  const gpu::PathIntegrator integrator(device, simd.tracker.medium(), tables, simd.table,
-                                       simd.cameraRays, stop,
-                                       settings.batchLimits.value_or(gpu::chooseLimits(*device)));
+  const gpu::DeviceIntegrator integrator(device, simd.tracker.medium(), tables, simd.table,
+                                         simd.cameraRays, stop,
+                                         settings.batchLimits.value_or(gpu::chooseLimits(*device)));
   checkDevice(integrator,
               SimdPathIntegrator(simd.tracker, simd.shading, simd.table, simd.cameraRays, stop),
               scene.camera, Sampler(settings.sampling, settings.seed));

@@ -9,13 +9,13 @@ namespace fenestra::core::gpu {
 /// Limits that suit a device.
 BatchLimits chooseLimits(const Device& device);
 
-class PathIntegrator {
+class DeviceIntegrator {
 public:
   /// Non-owning: camera rays and stop must outlive the integrator. The scene must be supported
   /// (SceneTables). Throws DeviceError.
-  PathIntegrator(std::shared_ptr<const Device> device, const SimdMedium& medium,
-                 const SceneTables& scene, const CameraTable& camera, const CameraRays& cameraRays,
-                 const StopFlag& stop, const BatchLimits& limits);
+  DeviceIntegrator(std::shared_ptr<const Device> device, const SimdMedium& medium,
+                   const SceneTables& scene, const CameraTable& camera,
+                   const CameraRays& cameraRays, const StopFlag& stop, const BatchLimits& limits);
 
   /// Batches that can be traced at the same time, each by a thread of its own.
   std::size_t tracerCount() const { return m_tracers.size(); }

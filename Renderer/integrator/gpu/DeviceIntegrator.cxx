@@ -1,4 +1,4 @@
-#include "integrator/gpu/PathIntegrator.h"
+#include "integrator/gpu/DeviceIntegrator.h"
 
 #include <cmath>
 
@@ -23,10 +23,10 @@ BatchLimits chooseLimits(const Device& device) {
   return {.threads = threads / 64 * 64, .paths = std::size_t{2} * threads};
 }
 
-PathIntegrator::PathIntegrator(std::shared_ptr<const Device> device, const SimdMedium& medium,
-                               const SceneTables& scene, const CameraTable& camera,
-                               const CameraRays& cameraRays, const StopFlag& stop,
-                               const BatchLimits& limits)
+DeviceIntegrator::DeviceIntegrator(std::shared_ptr<const Device> device, const SimdMedium& medium,
+                                   const SceneTables& scene, const CameraTable& camera,
+                                   const CameraRays& cameraRays, const StopFlag& stop,
+                                   const BatchLimits& limits)
     : m_pipeline(std::move(device), medium, scene),
       m_nearDepth(camera.nearDepth),
       m_cameraRays(cameraRays),
@@ -37,8 +37,8 @@ PathIntegrator::PathIntegrator(std::shared_ptr<const Device> device, const SimdM
 }
 
 /// Appends paths after those of `destinations`.
-void PathIntegrator::append(const CameraSamples& samples, PathStart* starts,
-                            std::vector<Destination>& destinations) {
+void DeviceIntegrator::append(const CameraSamples& samples, PathStart* starts,
+                              std::vector<Destination>& destinations) {
   PathStart* next = starts + destinations.size();
   for (std::size_t i = 0; i < samples.size; ++i) {
     *next++ = {static_cast<Int>(samples.column[i]), static_cast<Int>(samples.row[i]),
@@ -47,7 +47,7 @@ void PathIntegrator::append(const CameraSamples& samples, PathStart* starts,
   }
 }
 
-PathSample PathIntegrator::makeSample(const PathResult& result, float row) const {
+PathSample DeviceIntegrator::makeSample(const PathResult& result, float row) const {
   const auto triple = [](const float(&v)[3]) {
     return Rgb(double{v[0]}, double{v[1]}, double{v[2]});
   };
