@@ -32,11 +32,11 @@ std::vector<float> computeRowDistances(const Marks& marks, const Grid& grid, flo
 std::vector<float> computeDistances(const Marks& marks, const Grid& grid, double most) {
   const Size3& size = grid.size;
   std::vector<float> squared = computeRowDistances(marks, grid, static_cast<float>(most));
+  std::vector<float> result(squared.size());
   for (const int axis : {1, 2}) {
     const auto range = static_cast<std::int64_t>(most / grid.spacing()[axis]);
     const auto edge = static_cast<float>(grid.spacing()[axis]);
     const std::int64_t stride = axis == 1 ? size.x() : size.x() * size.y();
-    std::vector<float> result(squared.size());
     forEachRow(size, [&](std::int64_t y, std::int64_t z, std::size_t row) {
       const std::int64_t at = axis == 1 ? y : z;
       float* const to = &result[row];
@@ -49,10 +49,12 @@ std::vector<float> computeDistances(const Marks& marks, const Grid& grid, double
                        [across](float a, float b) { return std::min(a, b + across); });
       }
     });
-    squared = std::move(result);
+    squared.swap(result);
   }
-  for (float& value : squared)
-    value = std::sqrt(value);
+  forEachRow(size, [&](std::int64_t, std::int64_t, std::size_t row) {
+    for (std::size_t i = row; i < row + static_cast<std::size_t>(size.x()); ++i)
+      squared[i] = std::sqrt(squared[i]);
+  });
   return squared;
 }
 

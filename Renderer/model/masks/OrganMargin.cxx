@@ -263,6 +263,8 @@ private:
 
   /// Adds balls of `radius` mm around the centers.
   void addBalls(const Marks& centers, double radius, Marks& balls) const {
+    if (std::ranges::find(centers, std::uint8_t{1}) == centers.end())
+      return;
     const std::vector<float> away =
         computeDistances(centers, m_grid, radius + m_grid.spacing().maxCoeff());
     for (std::size_t i = 0; i < away.size(); ++i)
