@@ -168,6 +168,13 @@ void measureFocus(const Table& table, const PreparedScene& scene, const Rendered
       {"contrast", "Delta E deutan", part(contrast, &EdgeContrast::deltaEDeutan), {.least = 12.0}});
   table.print(
       {"contrast", "Delta L*", part(contrast, &EdgeContrast::deltaLightness), {.least = 8.0}});
+  if (contrast)
+    for (const auto& [side, color] :
+         {std::pair("focus", contrast->focus), {"context", contrast->context}}) {
+      table.print({"contrast", std::string(side) + " L*", color.L, {}});
+      table.print({"contrast", std::string(side) + " a*", color.a, {}});
+      table.print({"contrast", std::string(side) + " b*", color.b, {}});
+    }
 }
 
 void measureImage(const Table& table, const RenderOptions& options,

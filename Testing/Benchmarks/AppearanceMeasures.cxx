@@ -344,8 +344,12 @@ std::optional<EdgeContrast> measureContrast(const Raster<Rgb>& display, const Pi
   const auto difference = [&](ColorVision vision) {
     return deltaE76(toLab(simulateVision(vision, a)), toLab(simulateVision(vision, b)));
   };
-  return EdgeContrast{difference(ColorVision::normal), difference(ColorVision::protan),
-                      difference(ColorVision::deutan), std::abs(toLab(a).L - toLab(b).L)};
+  return EdgeContrast{difference(ColorVision::normal),
+                      difference(ColorVision::protan),
+                      difference(ColorVision::deutan),
+                      std::abs(toLab(a).L - toLab(b).L),
+                      toLab(a),
+                      toLab(b)};
 }
 
 } // namespace fenestra::core::benchmarks

@@ -93,9 +93,10 @@ std::optional<double> measureHighlights(const Raster<Lab>& image, const PixelMas
 std::optional<double> measureDarkEdge(const Raster<Lab>& image, const PixelMask& focus);
 
 /// Color differences (CIE 1976) between the mean colors 3 to 8 pixels inside and outside the
-/// outline of the focus.
+/// outline of the focus, and these colors.
 struct EdgeContrast {
   double deltaE, deltaEProtan, deltaEDeutan, deltaLightness;
+  Lab focus, context;
 };
 
 /// `covered`: pixels that may count. Empty: none inside or none outside.
