@@ -52,8 +52,8 @@ double contrastScore(const Contrast& contrast);
 /// The search stops at this score: the remaining difference is invisible.
 inline constexpr double sufficientScore = 0.995;
 
-/// CIELAB contrast of the adjusted colors across the focus edge in an image: the smaller of the
-/// contrasts in the light and in a groove that the focus shades.
+/// CIELAB contrast of the adjusted colors across the focus edge in an image: the least of the
+/// contrasts with a context that is darker than typical, typical, and lighter.
 Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const InterfaceColors& colors);
 
 /// Which colors may be adjusted. `context`: if the focus has no known material, so that it keeps

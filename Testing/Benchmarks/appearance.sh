@@ -81,7 +81,7 @@ else
   measure stroke A5 "$data/head_stroke/stroke_T1.nii.gz" --view left
   measure knee A5 "${knee[@]}" --focus 83 --view auto
   for focus in spleen liver aorta pancreas kidney_left,kidney_right stomach gallbladder duodenum; do
-    measure "contrast-$focus" contrast "${abdomen[@]}" --focus "$focus" --view auto --materials contrast
+    measure "contrast-${focus%%,*}" contrast "${abdomen[@]}" --focus "$focus" --view auto --materials contrast
   done
   measure contrast-small_bowel contrast "${organs[@]}" --focus small_bowel --view auto --materials contrast
   measure contrast-torso-liver contrast "${organs[@]}" --focus liver --view auto --materials contrast
