@@ -33,21 +33,24 @@ Rgb reduceToGamut(const Lab& lab) {
 }
 
 // Colors at the edge of the focus in an image: least squares over the mean colors 3 to 8 pixels
-// from the edges of eleven foci (abdomen, torso, knee; appearance.sh prints them) with the lights
-// of an operating theater, a wet coat, contrast colors and the film tone curve. The lightness of
-// the focus deviates from the fit by 3, that of the context by 5 (standard deviation). Both differ
-// less than reflectances do, because of shadows and specular reflections.
+// from the edges of foci (abdomen, torso, knee; twenty images of eleven foci; appearance.sh prints
+// them) with the lights of an operating theater, a wet coat, contrast colors and the film tone
+// curve. The lightness of the focus deviates from the fit by 2, that of the context by 5 (standard
+// deviation).
 
-/// Factor of the focus's chroma.
-constexpr double imageSaturation = 1.14;
+/// Factor of the focus's chroma: the brighter, the more of it the tone curve removes.
+double toImageSaturation(double L) {
+  return 1.33 - 0.0074 * L;
+}
 
 /// Difference of the context's L* from the fit: in a groove, typical, and facing the lights.
 constexpr std::array contextShading = {-6.0, 0.0, 6.0};
 
-/// Linear color of the focus, as it appears in an image.
+/// Linear color of the focus, as it appears in an image. The tone curve compresses highlights.
 Rgb toImageFocus(const Rgb& reflectance) {
   const Lab lab = toLab(reflectance);
-  return toLinear({22.0 + 0.71 * lab.L, imageSaturation * lab.a, imageSaturation * lab.b})
+  const double saturation = toImageSaturation(lab.L);
+  return toLinear({16.0 + (1.1 - 0.0038 * lab.L) * lab.L, saturation * lab.a, saturation * lab.b})
       .max(0.0)
       .min(1.0);
 }
@@ -164,8 +167,10 @@ Rgb adjustFocus(const Rgb& reflectance, const ColorAdjustment& adjustment) {
   };
   const Lab mixed{mix(lab.L + adjustment.focusLightness, accent.L), mix(lab.a, accent.a),
                   mix(lab.b, accent.b)};
-  const double chroma = std::hypot(mixed.a, mixed.b),
-               limit = std::max(maxChroma / imageSaturation, std::hypot(lab.a, lab.b));
+  const auto imageChroma = [](const Lab& color) {
+    return toImageSaturation(color.L) * std::hypot(color.a, color.b);
+  };
+  const double chroma = imageChroma(mixed), limit = std::max(maxChroma, imageChroma(lab));
   const double factor = chroma > limit ? limit / chroma : 1.0;
   return reduceToGamut({mixed.L, factor * mixed.a, factor * mixed.b});
 }
@@ -196,7 +201,7 @@ Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const Interf
 
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable) {
-  constexpr double minSaturation = 0.4, maxShift = 30.0, maxAccent = 0.6;
+  constexpr double minSaturation = 0.4, maxShift = 36.0, maxAccent = 0.6;
   const bool isFocusAdjustable = adjustable == Adjustable::both;
   ColorAdjustment start{.contextSaturation = context.saturation.value_or(1.0),
                         .contextLightness = context.lightness.value_or(0.0)};

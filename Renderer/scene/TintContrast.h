@@ -62,7 +62,7 @@ enum class Adjustable { nothing, context, both };
 
 /// Finds the adjustment whose score, as the mean over the interface area, reaches sufficientScore,
 /// or the best within the limits. In this order, each only as far as needed: the context's
-/// saturation falls from the library's to 0.4; the focus becomes darker or lighter by at most 30;
+/// saturation falls from the library's to 0.4; the focus becomes darker or lighter by at most 36;
 /// it is blended with an accent color by at most 0.6. `context`: members that it sets stay fixed.
 /// If the focus is not adjustable, the context may become gray. Without `colors`, nothing is
 /// adjusted.

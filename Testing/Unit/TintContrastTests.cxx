@@ -83,10 +83,11 @@ TEST(TintContrast, ChromaIsLimited) {
     const Rgb own = Rgb(material.color->knots().front().value);
     ColorAdjustment adjustment{.focusAccent = 0.6};
     for (adjustment.accent = 0; adjustment.accent < accentColors.size(); ++adjustment.accent)
-      for (adjustment.focusLightness = -30.0; adjustment.focusLightness <= 30.0;
-           adjustment.focusLightness += 30.0) {
+      for (adjustment.focusLightness = -36.0; adjustment.focusLightness <= 36.0;
+           adjustment.focusLightness += 36.0) {
         const Lab lab = toLab(adjustFocus(own, adjustment));
-        EXPECT_LT(1.14 * std::hypot(lab.a, lab.b), 45.01) << name; // factor: of images
+        const double saturation = 1.33 - 0.0074 * lab.L; // of images
+        EXPECT_LT(saturation * std::hypot(lab.a, lab.b), 45.01) << name;
       }
   }
 }
@@ -128,10 +129,10 @@ TEST(TintContrast, AdjustsInOrderAndNoMoreThanNecessary) {
                        makeColors({30.0, 36.0, 22.0}, {49.0, 36.0, 22.0}));
   ColorAdjustment gray = muted;
   gray.contextSaturation = 0.4;
-  expectLastAdjustment(&ColorAdjustment::focusLightness, -30.0, gray,
+  expectLastAdjustment(&ColorAdjustment::focusLightness, -36.0, gray,
                        makeColors({40.0, 20.0, 14.0}, {55.0, 20.0, 14.0}));
   gray = choose({makeColors({55.0, 2.0, 2.0}, {50.0, 2.0, 2.0})});
-  EXPECT_EQ(std::abs(gray.focusLightness), 30.0);
+  EXPECT_EQ(std::abs(gray.focusLightness), 36.0);
   EXPECT_GT(gray.focusAccent, 0.0);
   EXPECT_LE(gray.focusAccent, 0.6);
 }
@@ -179,7 +180,7 @@ TEST(TintContrast, RealFociAreDistinguishable) {
   }
 }
 
-/// Images show 71 % of the lightness differences of a focus, and 26 % of its surroundings'. In a
+/// Images compress the lightness of a focus, and show 26 % of differences of its surroundings. In a
 /// groove, these lose 6, which reduces the contrast of a dark focus; in the light, they gain 6,
 /// which reduces that of a light focus. A focus that is between them has the typical contrast.
 TEST(TintContrast, ModelsShadedAndLitEdges) {
@@ -189,12 +190,13 @@ TEST(TintContrast, ModelsShadedAndLitEdges) {
     EXPECT_NEAR(contrast.deltaE[0], contrast.deltaL, 0.1);
     return contrast.deltaL;
   };
-  EXPECT_NEAR(measure(20.0, 60.0), (51.0 + 0.26 * 60.0 - 6.0) - (22.0 + 0.71 * 20.0), 1e-3);
-  EXPECT_NEAR(measure(90.0, 40.0), (22.0 + 0.71 * 90.0) - (51.0 + 0.26 * 40.0 + 6.0), 1e-3);
-  EXPECT_NEAR(measure(60.0, 50.0), (22.0 + 0.71 * 60.0) - (51.0 + 0.26 * 50.0), 1e-3);
+  const auto toFocus = [](double L) { return 16.0 + 1.1 * L - 0.0038 * L * L; };
+  EXPECT_NEAR(measure(20.0, 60.0), (51.0 + 0.26 * 60.0 - 6.0) - toFocus(20.0), 1e-3);
+  EXPECT_NEAR(measure(90.0, 40.0), toFocus(90.0) - (51.0 + 0.26 * 40.0 + 6.0), 1e-3);
+  EXPECT_NEAR(measure(57.0, 50.0), std::abs(toFocus(57.0) - (51.0 + 0.26 * 50.0)), 1e-3);
   const Lab red{30.0, 40.0, 10.0};
-  const double chroma = 1.14 * std::hypot(red.a, red.b),
-               difference = 22.0 + 0.71 * red.L - (51.0 + 0.26 * 50.0 - 6.0);
+  const double chroma = (1.33 - 0.0074 * red.L) * std::hypot(red.a, red.b),
+               difference = toFocus(red.L) - (51.0 + 0.26 * 50.0 - 6.0);
   EXPECT_NEAR(
       measureAdjustedContrast({}, {toLinear(red), toLinear({50.0, 0.0, 0.0}), 1.0}).deltaE[0],
       std::hypot(chroma, difference), 0.1);
