@@ -6,11 +6,14 @@
 #include "model/medium/Reflectance.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace fenestra::core {
 namespace {
+
+Lab accentLab(std::size_t accent) {
+  return toLab(decodeSrgb(hexToRgb(accentColors[accent].color)));
+}
 
 bool isInGamut(const Rgb& color) {
   return color.minCoeff() >= 0.0 && color.maxCoeff() <= maxReflectance;
@@ -62,13 +65,24 @@ Rgb toImageContext(const Rgb& reflectance, double shading) {
   return toLinear({51.0 + 0.26 * lab.L + shading, lab.a, lab.b}).max(0.0).min(1.0);
 }
 
+/// Contrasts of the adjusted colors for each contextShading.
+auto predictContrasts(const ColorAdjustment& adjustment, const InterfaceColors& colors) {
+  const Rgb focus = toImageFocus(adjustFocus(colors.focus, adjustment)),
+            context = adjustContext(colors.context, adjustment);
+  std::array<Contrast, contextShading.size()> contrasts;
+  std::ranges::transform(contextShading, contrasts.begin(), [&](double shading) {
+    return measureContrast(focus, toImageContext(context, shading), deltaE76);
+  });
+  return contrasts;
+}
+
 /// Albedo of a component as a function of the scalar.
 const ColorFunction& albedoOf(const std::optional<ColorFunction>& own,
                               const TransferFunction& transfer) {
   return own ? *own : transfer.albedo;
 }
 
-/// Increases the adjustment until the interface has enough contrast.
+/// Finds the adjustment of an interface with the best contrast.
 class AdjustmentSearch {
 public:
   AdjustmentSearch(const std::vector<InterfaceColors>& colors, const ColorAdjustment& start)
@@ -76,47 +90,55 @@ public:
 
   const ColorAdjustment& adjustment() const { return m_adjustment; }
 
-  /// Increases a member in steps, from its current value to at most `limit`, to the first value
-  /// with a sufficient score, or the one with the best.
-  void increase(double ColorAdjustment::*member, double limit) {
+  /// Reduces the context's saturation in steps to at least `limit`, to the first value with a
+  /// sufficient score, or the one with the best.
+  void reduceSaturation(double limit) {
     constexpr int steps = 20;
     constexpr double leastGain = 1e-6; // above rounding errors, as of a gray context
     ColorAdjustment candidate = m_adjustment;
-    const double first = candidate.*member;
+    const double first = candidate.contextSaturation;
     for (int i = 1; i <= steps && m_score < sufficientScore; ++i) {
-      candidate.*member = first + (limit - first) * i / steps;
-      const double score = computeScore(candidate);
-      if (score > m_score + leastGain) {
+      candidate.contextSaturation = first + (limit - first) * i / steps;
+      if (const double score = computeScore(candidate); score > m_score + leastGain) {
         m_adjustment = candidate;
         m_score = score;
       }
     }
   }
 
-  /// Blends the focus with the best accent color. Only accents of similar lightness are tried: a
-  /// pale organ in dark red would look like muscle.
-  void addAccent(double limit) {
-    constexpr double maxDifference = 30.0;
+  /// Makes the focus darker or lighter and blends it with an accent color: of the changes with a
+  /// sufficient score, or else the best, the one with the least accent, then the smallest shift.
+  /// Only accents of similar lightness are tried: a pale organ in dark red would look like muscle.
+  /// White foci become only darker, and more so: bright colors lose their hue in an image.
+  void changeFocus() {
+    constexpr double maxDifference = 30.0, blendStep = 0.1, shiftStep = 3.0, white = 80.0;
+    constexpr int maxBlend = 6;
     const double own = mean([](const InterfaceColors& part) { return toLab(part.focus).L; });
-    const AdjustmentSearch before = *this;
-    for (std::size_t i = 0; i < accentColors.size(); ++i) {
-      if (std::abs(toLab(decodeSrgb(hexToRgb(accentColors[i].color))).L - own) > maxDifference)
-        continue;
-      AdjustmentSearch candidate = before;
-      candidate.m_adjustment.accent = i;
-      candidate.increase(&ColorAdjustment::focusAccent, limit);
-      if (candidate.isBetterThan(*this))
-        *this = candidate;
-    }
+    const int first = own < white ? -12 : -16, last = own < white ? 12 : 0;
+    ColorAdjustment candidate = m_adjustment;
+    for (int blend = 0; blend <= maxBlend && m_score < sufficientScore; ++blend)
+      for (std::size_t accent = 0; accent < (blend > 0 ? accentColors.size() : 1); ++accent) {
+        candidate.accent = accent;
+        candidate.focusAccent = blendStep * blend;
+        if (blend > 0 && std::abs(accentLab(accent).L - own) > maxDifference)
+          continue;
+        for (int shift = first; shift <= last; ++shift) {
+          candidate.focusLightness = shiftStep * shift;
+          tryCandidate(candidate);
+        }
+      }
   }
 
-  /// True if its score is higher, or sufficient with a smaller change of the focus.
-  bool isBetterThan(const AdjustmentSearch& other) const { return rank() > other.rank(); }
-
 private:
-  std::array<double, 3> rank() const {
-    return {std::min(m_score, sufficientScore), -m_adjustment.focusAccent,
-            -std::abs(m_adjustment.focusLightness)};
+  void tryCandidate(const ColorAdjustment& candidate) {
+    const double score = std::min(computeScore(candidate), sufficientScore);
+    const bool isSmaller =
+        std::abs(candidate.focusLightness) < std::abs(m_adjustment.focusLightness) &&
+        candidate.focusAccent == m_adjustment.focusAccent;
+    if (score > m_score || (score == m_score && isSmaller)) {
+      m_adjustment = candidate;
+      m_score = score;
+    }
   }
   /// Mean of a function over the interface, weighted by area.
   double mean(const auto& function) const {
@@ -129,7 +151,10 @@ private:
   }
   double computeScore(const ColorAdjustment& adjustment) const {
     return mean([&](const InterfaceColors& part) {
-      return contrastScore(measureAdjustedContrast(adjustment, part));
+      double sum = 0.0;
+      for (const Contrast& contrast : predictContrasts(adjustment, part))
+        sum += contrastScore(contrast);
+      return sum / contextShading.size();
     });
   }
 
@@ -160,8 +185,7 @@ Rgb adjustContext(const Rgb& reflectance, const ColorAdjustment& adjustment) {
 
 Rgb adjustFocus(const Rgb& reflectance, const ColorAdjustment& adjustment) {
   constexpr double maxChroma = 45.0;
-  const Lab lab = toLab(reflectance),
-            accent = toLab(decodeSrgb(hexToRgb(accentColors[adjustment.accent].color)));
+  const Lab lab = toLab(reflectance), accent = accentLab(adjustment.accent);
   const auto mix = [&](double own, double other) {
     return own + adjustment.focusAccent * (other - own);
   };
@@ -184,24 +208,12 @@ double contrastScore(const Contrast& contrast) {
 }
 
 Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const InterfaceColors& colors) {
-  const Rgb focus = adjustFocus(colors.focus, adjustment),
-            context = adjustContext(colors.context, adjustment);
-  Contrast least;
-  double leastScore = std::numeric_limits<double>::infinity();
-  for (const double shading : contextShading) {
-    const Contrast contrast =
-        measureContrast(toImageFocus(focus), toImageContext(context, shading), deltaE76);
-    if (const double score = contrastScore(contrast); score < leastScore) {
-      least = contrast;
-      leastScore = score;
-    }
-  }
-  return least;
+  return std::ranges::min(predictContrasts(adjustment, colors), {}, contrastScore);
 }
 
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable) {
-  constexpr double minSaturation = 0.4, maxShift = 36.0, maxAccent = 0.6;
+  constexpr double minSaturation = 0.4;
   const bool isFocusAdjustable = adjustable == Adjustable::both;
   ColorAdjustment start{.contextSaturation = context.saturation.value_or(1.0),
                         .contextLightness = context.lightness.value_or(0.0)};
@@ -209,18 +221,12 @@ ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
     return start;
   if (!context.saturation && isFocusAdjustable)
     start.contextSaturation = defaultContextSaturation;
-  AdjustmentSearch darker(colors, start);
+  AdjustmentSearch search(colors, start);
   if (!context.saturation)
-    darker.increase(&ColorAdjustment::contextSaturation, isFocusAdjustable ? minSaturation : 0.0);
-  if (!isFocusAdjustable)
-    return darker.adjustment();
-  AdjustmentSearch lighter = darker;
-  for (const auto& [search, shift] :
-       {std::pair(&darker, -maxShift), std::pair(&lighter, maxShift)}) {
-    search->increase(&ColorAdjustment::focusLightness, shift);
-    search->addAccent(maxAccent);
-  }
-  return (lighter.isBetterThan(darker) ? lighter : darker).adjustment();
+    search.reduceSaturation(isFocusAdjustable ? minSaturation : 0.0);
+  if (isFocusAdjustable)
+    search.changeFocus();
+  return search.adjustment();
 }
 
 TintContrast adjustContrast(const std::vector<ComponentInterface>& interfaces, const TintPlan& plan,

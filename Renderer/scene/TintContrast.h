@@ -50,7 +50,7 @@ struct InterfaceColors {
 /// a quarter, since measureAdjustedContrast() is approximate.
 double contrastScore(const Contrast& contrast);
 /// The search stops at this score: the remaining difference is invisible.
-inline constexpr double sufficientScore = 0.995;
+inline constexpr double sufficientScore = 0.999;
 
 /// CIELAB contrast of the adjusted colors across the focus edge in an image: the least of the
 /// contrasts with a context that is darker than typical, typical, and lighter.
@@ -62,10 +62,10 @@ enum class Adjustable { nothing, context, both };
 
 /// Finds the adjustment whose score, as the mean over the interface area, reaches sufficientScore,
 /// or the best within the limits. In this order, each only as far as needed: the context's
-/// saturation falls from the library's to 0.4; the focus becomes darker or lighter by at most 36;
-/// it is blended with an accent color by at most 0.6. `context`: members that it sets stay fixed.
-/// If the focus is not adjustable, the context may become gray. Without `colors`, nothing is
-/// adjusted.
+/// saturation falls from the library's to 0.4; the focus becomes darker or lighter by at most 36,
+/// or, if it is white, darker by at most 48; it is blended with an accent color by at most 0.6.
+/// `context`: members that it sets stay fixed. If the focus is not adjustable, the context may
+/// become gray. Without `colors`, nothing is adjusted.
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable);
 

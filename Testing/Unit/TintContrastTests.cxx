@@ -145,6 +145,14 @@ TEST(TintContrast, DarkFociGetDarkerAndLightFociLighter) {
       << "gray has no saturation to reduce";
 }
 
+/// Brighter, it would lose the hue of its accent in an image.
+TEST(TintContrast, WhiteFociGetDarker) {
+  const ColorAdjustment adjustment =
+      choose({{toLinear({84.0, -2.0, 1.0}), toLinear({85.0, 1.0, 17.0}), 1.0}});
+  EXPECT_LT(adjustment.focusLightness, -36.0);
+  EXPECT_EQ(accentColors[adjustment.accent].name, std::string("blue"));
+}
+
 /// A pale organ in dark red would look like muscle.
 TEST(TintContrast, AccentsHaveASimilarLightness) {
   const Rgb pale = toLinear({80.0, 2.0, 2.0});
