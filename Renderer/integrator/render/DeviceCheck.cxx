@@ -18,8 +18,8 @@ public:
     samples.isStratified = m_sampler.isStratified();
     for (std::size_t i = 0; i < samples.size; ++i, ++m_next) {
       const int column = place(m_next % edge, m_width), row = place(m_next / edge, m_height);
-      const Sampler::Stream stream =
-          m_sampler.stream(static_cast<std::uint64_t>(row) * m_width + column, 0);
+      const std::int64_t pixel = std::int64_t{row} * m_width + column;
+      const Sampler::Stream stream = m_sampler.stream(static_cast<std::uint64_t>(pixel), 0);
       samples.column[i] = static_cast<float>(column);
       samples.row[i] = static_cast<float>(row);
       samples.start[i] = stream.start;
