@@ -54,7 +54,7 @@ void expectOnlyColors(Arguments arguments, const std::string& materials = "libra
       EXPECT_GE(stats.at("contrast").at(key), 0.0) << key;
     EXPECT_NE(stats.at("contrast").at("segment"), stats.at("contrast").at("neighbour"));
     EXPECT_GE(stats.at("contrast").at("contextSaturation"), 0.4);
-    EXPECT_LE(std::abs(stats.at("contrast").at("focusLightness").get<double>()), 30.0);
+    EXPECT_LE(std::abs(stats.at("contrast").at("focusLightness").get<double>()), 48.0);
     EXPECT_LE(stats.at("contrast").at("focusAccent"), 0.6);
     EXPECT_TRUE(stats.at("contrast").at("accent").is_string());
   }
