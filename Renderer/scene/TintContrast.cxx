@@ -112,9 +112,9 @@ public:
   /// White foci become only darker, and more so: bright colors lose their hue in an image.
   void changeFocus() {
     constexpr double maxDifference = 30.0, blendStep = 0.1, shiftStep = 3.0, white = 80.0;
-    constexpr int maxBlend = 6;
+    constexpr int maxBlend = 6, maxShift = 12, maxWhiteShift = 16; // in steps
     const double own = mean([](const InterfaceColors& part) { return toLab(part.focus).L; });
-    const int first = own < white ? -12 : -16, last = own < white ? 12 : 0;
+    const int first = own < white ? -maxShift : -maxWhiteShift, last = own < white ? maxShift : 0;
     ColorAdjustment candidate = m_adjustment;
     for (int blend = 0; blend <= maxBlend && m_score < sufficientScore; ++blend)
       for (std::size_t accent = 0; accent < (blend > 0 ? accentColors.size() : 1); ++accent) {

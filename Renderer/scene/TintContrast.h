@@ -60,12 +60,13 @@ Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const Interf
 /// the volume's colors.
 enum class Adjustable { nothing, context, both };
 
-/// Finds the adjustment whose score, as the mean over the interface area, reaches sufficientScore,
-/// or the best within the limits. In this order, each only as far as needed: the context's
-/// saturation falls from the library's to 0.4; the focus becomes darker or lighter by at most 36,
-/// or, if it is white, darker by at most 48; it is blended with an accent color by at most 0.6.
-/// `context`: members that it sets stay fixed. If the focus is not adjustable, the context may
-/// become gray. Without `colors`, nothing is adjusted.
+/// Finds the adjustment whose score reaches sufficientScore, or the best within the limits. The
+/// score is the mean over the interface area, and over a darker, a typical and a lighter context.
+/// In this order, each only as far as needed: the context's saturation falls from the library's to
+/// 0.4; the focus becomes darker or lighter by at most 36, or, if it is white, darker by at most
+/// 48; it is blended with an accent color by at most 0.6. `context`: members that it sets stay
+/// fixed. If the focus is not adjustable, the context may become gray. Without `colors`, nothing is
+/// adjusted.
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable);
 

@@ -80,9 +80,10 @@ else
   measure brain A5 "${head[@]}" --focus 1 --view left
   measure stroke A5 "$data/head_stroke/stroke_T1.nii.gz" --view left
   measure knee A5 "${knee[@]}" --focus 83 --view auto
-  for focus in spleen liver aorta pancreas kidney_left,kidney_right stomach gallbladder duodenum; do
-    measure "contrast-${focus%%,*}" contrast "${abdomen[@]}" --focus "$focus" --view auto --materials contrast
+  for focus in spleen liver aorta pancreas stomach gallbladder duodenum; do
+    measure "contrast-$focus" contrast "${abdomen[@]}" --focus "$focus" --view auto --materials contrast
   done
+  measure contrast-kidneys contrast "${abdomen[@]}" --focus kidney_left,kidney_right --view auto --materials contrast
   measure contrast-small_bowel contrast "${organs[@]}" --focus small_bowel --view auto --materials contrast
   measure contrast-torso-liver contrast "${organs[@]}" --focus liver --view auto --materials contrast
   measure contrast-knee contrast "${knee[@]}" --focus 83 --view auto --materials contrast

@@ -161,28 +161,26 @@ TEST(TintContrast, AccentsHaveASimilarLightness) {
   EXPECT_NE(accentColors[adjustment.accent].name, std::string("dark red"));
 }
 
-/// Mean colors on both sides of foci in CT of an abdomen and a torso, with the natural library. Two
-/// miss the target of 20 at the worse edge; in images both exceed 20.
+/// Mean colors on both sides of foci in CT of an abdomen and a torso, with the natural library.
 TEST(TintContrast, RealFociAreDistinguishable) {
   struct Case {
     const char* name;
     Lab focus, context;
-    double leastDeltaE = 20.0;
   };
-  for (const auto& [name, focus, context, leastDeltaE] : {
+  for (const auto& [name, focus, context] : {
            Case{"spleen", {26.9, 20.3, 4.1}, {66.8, 13.8, 25.6}},
            Case{"liver", {30.0, 20.8, 13.9}, {42.4, 23.0, 17.3}},
            Case{"aorta", {42.1, 36.1, 23.9}, {45.3, 21.5, 17.3}},
-           Case{"pancreas", {67.0, 10.7, 23.1}, {58.3, 16.9, 19.0}, 19.0},
+           Case{"pancreas", {67.0, 10.7, 23.1}, {58.3, 16.9, 19.0}},
            Case{"kidneys", {35.9, 23.2, 14.8}, {67.3, 13.4, 27.0}},
            Case{"stomach", {61.9, 17.0, 13.8}, {60.5, 15.1, 24.6}},
            Case{"gallbladder", {47.9, -10.7, 19.7}, {45.1, 18.9, 17.0}},
-           Case{"duodenum", {61.0, 17.9, 15.9}, {47.4, 21.7, 17.6}, 18.0},
+           Case{"duodenum", {61.0, 17.9, 15.9}, {47.4, 21.7, 17.6}},
            Case{"liver of a torso", {30.0, 20.8, 13.9}, {33.0, 25.0, 15.5}},
        }) {
     const InterfaceColors colors{toLinear(focus), toLinear(context), 1.0};
     const Contrast contrast = measureAdjustedContrast(choose({colors}), colors);
-    EXPECT_GT(contrast.deltaE[0], leastDeltaE) << name;
+    EXPECT_GT(contrast.deltaE[0], 20.0) << name;
     EXPECT_GT(contrast.colorBlind(), 12.0) << name;
     EXPECT_GT(contrast.deltaL, 8.0) << name;
   }

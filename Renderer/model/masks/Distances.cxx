@@ -32,14 +32,14 @@ std::vector<float> computeRowDistances(const Marks& marks, const Grid& grid, flo
 std::vector<float> computeDistances(const Marks& marks, const Grid& grid, double most) {
   const Size3& size = grid.size;
   std::vector<float> squared = computeRowDistances(marks, grid, static_cast<float>(most));
-  std::vector<float> result(squared.size());
+  std::vector<float> next(squared.size());
   for (const int axis : {1, 2}) {
     const auto range = static_cast<std::int64_t>(most / grid.spacing()[axis]);
     const auto edge = static_cast<float>(grid.spacing()[axis]);
     const std::int64_t stride = axis == 1 ? size.x() : size.x() * size.y();
     forEachRow(size, [&](std::int64_t y, std::int64_t z, std::size_t row) {
       const std::int64_t at = axis == 1 ? y : z;
-      float* const to = &result[row];
+      float* const to = &next[row];
       std::copy_n(&squared[row], size.x(), to);
       const std::int64_t end = std::min(range, size[axis] - 1 - at);
       for (std::int64_t step = std::max(-range, -at); step <= end; ++step) {
@@ -49,7 +49,7 @@ std::vector<float> computeDistances(const Marks& marks, const Grid& grid, double
                        [across](float a, float b) { return std::min(a, b + across); });
       }
     });
-    squared.swap(result);
+    squared.swap(next);
   }
   forEachRow(size, [&](std::int64_t, std::int64_t, std::size_t row) {
     for (std::size_t i = row; i < row + static_cast<std::size_t>(size.x()); ++i)
