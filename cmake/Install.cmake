@@ -31,8 +31,22 @@ install(DIRECTORY Renderer/include/fenestra DESTINATION "${CMAKE_INSTALL_INCLUDE
 install(EXPORT FenestraTargets NAMESPACE Fenestra:: DESTINATION "${package}" COMPONENT library ${exclude})
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/FenestraConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
 file(RELATIVE_PATH relative_prefix "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
-configure_file(cmake/package/fenestra.pc.in fenestra.pc @ONLY)
+set(NEEDED "@NEEDED@") # for static.sh
+configure_file(cmake/package/fenestra.pc.in package/fenestra.pc.in @ONLY)
+configure_file(cmake/package/FenestraStatic.cmake.in package/FenestraStatic.cmake.in COPYONLY)
+get_property(modules GLOBAL PROPERTY FENESTRA_MODULES)
+list(TRANSFORM modules REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE archives)
+set(static "${PROJECT_BINARY_DIR}/package/libfenestra.a")
+add_custom_command(OUTPUT "${static}"
+  BYPRODUCTS package/fenestra.pc package/FenestraStatic.cmake
+  COMMAND bash "${PROJECT_SOURCE_DIR}/cmake/package/static.sh" "$<TARGET_FILE:fenestra_shared>" "${PROJECT_BINARY_DIR}/package"
+    "$<TARGET_FILE:fenestra_library>" ${archives}
+  DEPENDS fenestra_shared ${modules} cmake/package/static.sh "${PROJECT_BINARY_DIR}/package/fenestra.pc.in"
+    "${PROJECT_BINARY_DIR}/package/FenestraStatic.cmake.in"
+  COMMENT "Linking static library libfenestra.a" VERBATIM)
+add_custom_target(fenestra_static ALL DEPENDS "${static}")
+install(FILES "${static}" DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT library ${exclude})
 install(FILES cmake/package/FenestraConfig.cmake "${PROJECT_BINARY_DIR}/FenestraConfigVersion.cmake"
-  DESTINATION "${package}" COMPONENT library ${exclude})
-install(FILES "${PROJECT_BINARY_DIR}/fenestra.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
+  "${PROJECT_BINARY_DIR}/package/FenestraStatic.cmake" DESTINATION "${package}" COMPONENT library ${exclude})
+install(FILES "${PROJECT_BINARY_DIR}/package/fenestra.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
   COMPONENT library ${exclude})
