@@ -15,6 +15,14 @@
 namespace fenestra::core {
 namespace {
 
+/// Options of render with the defaults of serve: its images are previews, so the GPU may render
+/// them.
+void setServeDefaults(RenderOptions& options, const OptionValues& values) {
+  resolveSmoothing(options, true);
+  if (!values.has("device"))
+    options.device = DeviceChoice::automatic;
+}
+
 class Server {
 public:
   Server(const RenderJob& start, Outputs& outputs)
@@ -23,7 +31,7 @@ public:
         m_options(start.options),
         m_outputs(outputs),
         m_input(m_values, m_source, m_monitor) {
-    resolveSmoothing(m_options, true);
+    setServeDefaults(m_options, m_values);
   }
 
   /// Runs until the process ends. Throws Error if the first scene cannot be built.
@@ -51,7 +59,7 @@ private:
       for (const ServeChange& change : changes)
         values = applyChange(change.options, values);
       RenderOptions options = makeRenderOptions(mergePreset(values, m_source));
-      resolveSmoothing(options, true);
+      setServeDefaults(options, values);
       checkMemory(options.scene);
       PreparedScene scene = m_scene->withRequest(options.scene);
       m_outputs.checkInputs();
@@ -91,7 +99,10 @@ private:
     };
     RenderSettings settings = makeSettings(m_options, m_scene->background());
     settings.passGrowth = 1; // short passes, since images are shown between them
+    if (m_hasGpuFailed)
+      settings.integrator = Integrator::simd;
     const RenderResult result = render(m_scene->view(), settings, m_monitor);
+    m_hasGpuFailed = m_hasGpuFailed || !result.gpuFailure.empty();
     m_isComplete = result.reason != StopReason::request;
     if (m_isComplete)
       publish(result, filter, true);
@@ -124,6 +135,7 @@ private:
       for (const char* key : {"noiseDenoised", "noiseFiltered"}) // and its name in version 0.1
         event[key] = *filtered;
     event["seconds"] = m_change.age.seconds();
+    event["target"] = result.target;
     event["done"] = last;
     for (const std::filesystem::path& path : m_options.outputs)
       event["files"].push_back(path.string());
@@ -142,6 +154,7 @@ private:
   ServeInput m_input;
   std::optional<PreparedScene> m_scene;
   bool m_isComplete = false;            ///< true: the scene's image is finished
+  bool m_hasGpuFailed = false;          ///< true: the CPU renders all further images
   std::optional<Stopwatch> m_published; ///< since the scene's last image; nullopt: none yet
   double m_publishSeconds = 0.0;        ///< duration of the last publish(), s
   std::string m_failure;                ///< last reported failure to write an image of this scene
@@ -157,7 +170,8 @@ const CommandSyntax& serveSyntax() {
       "Keeps a scene loaded and renders it again after every change, for previews. Reads changes "
       "from standard input, one JSON object of options per line, as {\"id\": 7, \"view\": "
       "\"left\", \"focus\": [\"Femur\", \"Tibia\"]}; null removes an option. Every refreshed image "
-      "replaces the output files atomically. Images and errors are reported on standard output: "
+      "replaces the output files atomically. --device is auto. Images and errors are reported on "
+      "standard output: "
       "{\"event\": \"picture\" or \"error\", \"id\": 7, ...}. Ends with its input. Accepts the "
       "options of fenestra render.",
       renderSyntax.positionals,

@@ -246,7 +246,7 @@ bool vtkSlicerFenestraLogic::HasSurface(Node* render) {
 std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool withSurface) {
   if (!render)
     return {};
-  std::vector<std::string> arguments = {"--stats=stats.json"};
+  std::vector<std::string> arguments = {"--stats=stats.json", "--device=auto"};
   if (render->IsTurntable())
     arguments.push_back("--output=frame.png");
   else // slow compression of further layers would delay a stop

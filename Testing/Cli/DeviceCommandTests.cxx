@@ -9,6 +9,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <set>
+#include <sstream>
 
 namespace fenestra::core::DeviceCommandTests {
 namespace {
@@ -69,6 +71,28 @@ TEST_F(DeviceCommand, WithoutGpuTheCpuRendersAndSaysSo) {
   const Image image = readImage(folder / "gpu.exr"), cpu = readImage(folder / "cpu.exr");
   for (const auto& [name, plane] : cpu.channels)
     EXPECT_EQ(image.channels.at(name), plane) << name;
+}
+
+TEST_F(DeviceCommand, PreviewsAreRenderedOnTheDevice) {
+  setenv("FENESTRA_GPU", "software", 1);
+  if (!hasUsedDevice())
+    GTEST_SKIP() << "no Vulkan device";
+  writeFile(folder / "volume.nrrd", NrrdText().encode(makeRamp()));
+  const auto findTargets = [&](Arguments arguments) {
+    const Arguments all = {"serve", "volume.nrrd", "--size=8x8", "--samples=2", "--output=a.png"};
+    arguments.insert(arguments.begin(), all.begin(), all.end());
+    Process process(arguments, folder.path());
+    EXPECT_TRUE(process.waitForOutput("\"done\":true[^\n]*\n")) << process.messages();
+    process.write("{\"id\": 1, \"view\": \"left\"}\n");
+    EXPECT_TRUE(process.waitForOutput("\"id\":1,[^\n]*\"done\":true[^\n]*\n"));
+    std::set<std::string> targets;
+    std::istringstream lines(process.output());
+    for (std::string line; std::getline(lines, line);)
+      targets.insert(nlohmann::json::parse(line)["target"].get<std::string>() + "\n");
+    return targets;
+  };
+  EXPECT_EQ(findTargets({}), std::set{listDevices()});
+  EXPECT_EQ(findTargets({"--device", "cpu"}).count(listDevices()), 0);
 }
 
 TEST_F(DeviceCommand, UnknownDeviceIsRefused) {
