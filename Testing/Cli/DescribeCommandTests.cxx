@@ -15,8 +15,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::set<std::string> libraries = {
-    "Eigen",  "FreeType", "GDCM",   "HDF5",   "Highway", "ITK",           "OpenEXR", "glibc",
-    "libpng", "libtiff",  "libzip", "oneTBB", "pugixml", "nlohmann-json", "zlib",    "OpenColorIO"};
+    "Eigen",   "FreeType",      "GDCM",   "HDF5",        "Highway", "ITK",
+    "OpenEXR", "glibc",         "libpng", "libtiff",     "libzip",  "oneTBB",
+    "pugixml", "nlohmann-json", "zlib",   "OpenColorIO", "volk"};
 
 class VersionCommand : public ::testing::Test {
 protected:

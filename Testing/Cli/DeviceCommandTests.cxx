@@ -95,6 +95,22 @@ TEST_F(DeviceCommand, PreviewsAreRenderedOnTheDevice) {
   EXPECT_EQ(findTargets({"--device", "cpu"}).count(listDevices()), 0);
 }
 
+/// Empty files in place of the Vulkan loader.
+TEST_F(DeviceCommand, WithoutLoaderTheCpuRendersAndSaysSo) {
+  setenv("FENESTRA_GPU", "software", 1);
+  writeFile(folder / "volume.nrrd", NrrdText().encode(makeRamp()));
+  for (const char* loader : {"libvulkan.so.1", "libvulkan.so"})
+    writeFile(folder / loader, "");
+  setenv("LD_LIBRARY_PATH", folder.path().c_str(), 1);
+  std::string warned, silent;
+  const nlohmann::json stats = render({"volume.nrrd"}, "gpu", warned);
+  const nlohmann::json expected = render({"volume.nrrd"}, "cpu", silent);
+  unsetenv("LD_LIBRARY_PATH");
+  EXPECT_EQ(stats["target"], expected["target"]);
+  EXPECT_NE(warned.find("no Vulkan loader"), std::string::npos) << warned;
+  EXPECT_EQ(silent.find("Vulkan"), std::string::npos) << silent;
+}
+
 TEST_F(DeviceCommand, UnknownDeviceIsRefused) {
   const Outcome outcome = run({"volume.nrrd", "--device", "tpu"}, folder.path());
   EXPECT_EQ(outcome.status, 2);

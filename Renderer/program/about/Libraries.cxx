@@ -17,6 +17,7 @@
 #include <pugixml.hpp>
 #include <tbb/version.h>
 #include <tiffio.h>
+#include <volk.h>
 #include <zip.h>
 #include <zlib.h>
 
@@ -63,6 +64,9 @@ std::vector<std::pair<std::string, std::string>> libraryVersions() {
       {"OpenColorIO", OCIO_NAMESPACE::GetVersion()},
       {"OpenEXR", OPENEXR_VERSION_STRING},
       {"pugixml", joinVersion({PUGIXML_VERSION / 1000, PUGIXML_VERSION / 10 % 100})},
+      {"volk",
+       joinVersion({VK_API_VERSION_MAJOR(VK_HEADER_VERSION_COMPLETE),
+                    VK_API_VERSION_MINOR(VK_HEADER_VERSION_COMPLETE), VOLK_HEADER_VERSION})},
       {"zlib", zlibVersion()},
   };
 }
