@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Tests the installed C++ library and the Python package in a root of Debian 12 that has only the packages named in
-# Resources/embedding/README.md: the example is built there, Python renders the same image, and a Slicer scene.
+# Resources/embedding/README.md: the example is built there, shared and static, Python renders the same image, and a
+# Slicer scene.
 # Exit status 77: needs root, debootstrap and a mirror of Debian.
 # usage: bash Testing/Package/root.sh BUILD; the root is kept in BUILD/package
 set -euo pipefail
@@ -48,7 +49,12 @@ env -i PATH=/bin:/usr/bin:/usr/sbin chroot "$root" /bin/sh -ec '
   cmake -S embedding -B example -DCMAKE_PREFIX_PATH=/opt/fenestra -DCMAKE_BUILD_TYPE=Release >cmake.log
   cmake --build example >>cmake.log
   example/example example.png 2>progress.log
+  sed -i s/Fenestra::fenestra/Fenestra::static/ embedding/CMakeLists.txt
+  cmake -S embedding -B static -DCMAKE_PREFIX_PATH=/opt/fenestra -DCMAKE_BUILD_TYPE=Release >>cmake.log
+  cmake --build static >>cmake.log
+  static/example static.png 2>progress.log
   PYTHONPATH=site python3 ball.py' || die "the commands above failed in $root"
+cmp "$work/example.png" "$work/static.png" || die "the images of the shared and the static library differ"
 cmp "$work/example.png" "$work/python.png" || die "the images of C++ and Python differ"
 [ "$(head -c 4 "$work/cube.png" | tail -c 3)" = PNG ] || die "cube.png is no image"
 say "Library and Python package run in Debian 12 with the named packages alone"
