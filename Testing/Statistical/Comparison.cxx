@@ -202,11 +202,15 @@ Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings,
   renderSettings.samples = settings.samples;
   renderSettings.seed = makeSeed(c, settings, 0);
   renderSettings.integrator = settings.integrator;
+  const Film film = scene.fenestra.visitView([&](const SceneView& view) {
+    RenderMonitor monitor;
+    return settings.renderer ? settings.renderer(view, renderSettings)
+                             : render(view, renderSettings, monitor).film;
+  });
   Outcome outcome{.combination = c,
                   .tileProbabilities = {},
                   .imageProbability = {},
-                  .fenestra =
-                      toEstimates(scene.fenestra.render(renderSettings).film, settings.samples),
+                  .fenestra = toEstimates(film, settings.samples),
                   .reference = std::move(oracleRender.image)};
   outcome.pixels = compareTiles(outcome, 1, [](double) {});
   outcome.tiles =

@@ -7,6 +7,7 @@
 #include "Significance.h"
 #include "integrator/render/Render.h"
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct MatrixSettings {
   std::uint64_t samples = 128; ///< per pixel, of each renderer
   std::uint64_t seed = 1;
   Integrator integrator = Integrator::simd; ///< of Fenestra
+  /// Renders instead of Fenestra, if set.
+  std::function<Film(const SceneView&, const RenderSettings&)> renderer = {};
 };
 
 struct Outcome {
