@@ -141,8 +141,9 @@ private:
   double m_radius = 0.0, m_bottom = -infinity;
 };
 
+/// `isFocus`: receives whether each sample's ray hits the focus.
 std::vector<double> computeDepths(const DepthClip& clip, const FocusField& focus, const View& view,
-                                  const Medium& medium) {
+                                  const Medium& medium, std::vector<bool>& isFocus) {
   std::vector<double> depths;
   std::vector<Intersection> hits;
   for (const double y : clip.rows)
@@ -150,6 +151,7 @@ std::vector<double> computeDepths(const DepthClip& clip, const FocusField& focus
       const Ray ray = view.makeRay(x, y);
       const double t = findFirstHit(focus, medium, ray);
       depths.push_back(t < infinity ? view.depth(ray.at(t)) : infinity);
+      isFocus.push_back(t < infinity);
       if (t < infinity)
         hits.push_back({Vec2(x, y), ray.at(t), depths.back()});
     }
@@ -172,6 +174,29 @@ std::vector<double> computeDepths(const DepthClip& clip, const FocusField& focus
       ++sample;
     }
   return depths;
+}
+
+/// Depths between which an exact surface is interpolated: focus samples beside others get the mean
+/// depth of these, so that the surface beside the focus does not rise toward it.
+std::vector<double> continueBesideFocus(const DepthClip& clip, const std::vector<double>& depths,
+                                        const std::vector<bool>& isFocus) {
+  std::vector<double> continued = depths;
+  const auto columns = static_cast<int>(clip.columns.size());
+  const auto rows = static_cast<int>(clip.rows.size());
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      double sum = 0.0, count = 0.0;
+      for (int y = std::max(row - 1, 0); y < std::min(row + 2, rows); ++y)
+        for (int x = std::max(column - 1, 0); x < std::min(column + 2, columns); ++x)
+          if (const auto sample = static_cast<std::size_t>(y * columns + x); !isFocus[sample]) {
+            sum += depths[sample];
+            count += 1.0;
+          }
+      const auto own = static_cast<std::size_t>(row * columns + column);
+      if (isFocus[own] && count > 0.0)
+        continued[own] = sum / count;
+    }
+  return continued;
 }
 
 double edgeWeight(const Edge& edge, double behind) {
@@ -248,14 +273,17 @@ Clipping::Clipping(const ClipDescription& description, const View& view, const M
     : m_description(description), m_view(view), m_medium(medium) {
   if (const auto* clip = std::get_if<DepthClip>(&description)) {
     m_focus.emplace(clip->focus);
-    m_depths = computeDepths(*clip, *m_focus, view, medium);
+    std::vector<bool> isFocus;
+    m_depths = computeDepths(*clip, *m_focus, view, medium, isFocus);
+    m_interpolated =
+        clip->givenDepths.empty() ? m_depths : continueBesideFocus(*clip, m_depths, isFocus);
   }
 }
 
 double Clipping::sampleDepth(std::size_t column, std::size_t row) const {
   const auto& clip = std::get<DepthClip>(m_description);
-  return m_depths[std::min(row, clip.rows.size() - 1) * clip.columns.size() +
-                  std::min(column, clip.columns.size() - 1)];
+  return m_interpolated[std::min(row, clip.rows.size() - 1) * clip.columns.size() +
+                        std::min(column, clip.columns.size() - 1)];
 }
 
 double Clipping::linearSurface(const Vec2& at) const {

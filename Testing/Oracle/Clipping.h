@@ -56,6 +56,7 @@ private:
   const Medium& m_medium;
   std::optional<FocusField> m_focus; ///< of a depth clip
   std::vector<double> m_depths;
+  std::vector<double> m_interpolated; ///< m_depths, but of exact surfaces beside the focus
 };
 
 } // namespace fenestra::core::oracle
