@@ -18,6 +18,7 @@ struct Condition {
 
 constexpr Condition conditions[] = {
     {"clip-boundary", "spline", Needs::surface},
+
     {"control-points", "50", Needs::spline},
     {"spline-smoothing", "0.5", Needs::spline},
     {"clip-softness", "0", Needs::focus},
