@@ -360,8 +360,7 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   stats.write = watch.lap();
   stats.warnings = findStaleFiles(options, outputs);
   if (!result.gpuFailure.empty())
-    stats.warnings.push_back(
-        concat("--device: the GPU failed: ", result.gpuFailure, "; the CPU rendered"));
+    stats.warnings.push_back(describeGpuFailure(result.gpuFailure));
   warn(stats.warnings);
 
   writeStats(options, scene, result, total, monitor, stats, outputs);

@@ -92,6 +92,10 @@ void printFacts(const PreparedScene& scene) {
     printLine(fact);
 }
 
+std::string describeGpuFailure(const std::string& reason) {
+  return concat("--device: the GPU failed: ", reason, "; the CPU rendered");
+}
+
 void writeImages(const RenderOptions& options, const PreparedScene& scene,
                  const RenderResult& result, const std::optional<FilteredImage>& filtered,
                  const std::vector<std::string>& arguments, Outputs& outputs) {

@@ -23,6 +23,9 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs);
 /// Prints what was chosen for the scene (PreparedScene::choices), one fact per line.
 void printFacts(const PreparedScene& scene);
 
+/// Warning of a render whose GPU failed, `reason` being its RenderResult::gpuFailure.
+std::string describeGpuFailure(const std::string& reason);
+
 /// Writes all of options.outputs; the caller commits them. Headers store what reproduces the image,
 /// including the command `fenestra arguments…`, and how it was denoised. Throws Error (output).
 void writeImages(const RenderOptions& options, const PreparedScene& scene,

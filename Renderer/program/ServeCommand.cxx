@@ -139,8 +139,13 @@ private:
     event["done"] = last;
     for (const std::filesystem::path& path : m_options.outputs)
       event["files"].push_back(path.string());
+    std::vector<std::string> warnings = {};
     for (const Message& message : m_scene->warnings())
-      if (const std::string warning = composeMessage(message); m_warned.insert(warning).second)
+      warnings.push_back(composeMessage(message));
+    if (!result.gpuFailure.empty())
+      warnings.push_back(describeGpuFailure(result.gpuFailure));
+    for (const std::string& warning : warnings)
+      if (m_warned.insert(warning).second)
         event["warnings"].push_back(warning);
     writeEvent(event);
   }
@@ -170,10 +175,9 @@ const CommandSyntax& serveSyntax() {
       "Keeps a scene loaded and renders it again after every change, for previews. Reads changes "
       "from standard input, one JSON object of options per line, as {\"id\": 7, \"view\": "
       "\"left\", \"focus\": [\"Femur\", \"Tibia\"]}; null removes an option. Every refreshed image "
-      "replaces the output files atomically. --device is auto. Images and errors are reported on "
-      "standard output: "
+      "replaces the output files atomically. Images and errors are reported on standard output: "
       "{\"event\": \"picture\" or \"error\", \"id\": 7, ...}. Ends with its input. Accepts the "
-      "options of fenestra render.",
+      "options of fenestra render; unless given, --device is auto.",
       renderSyntax.positionals,
       renderSyntax.options,
       {{{"stats-json", "returnparameterfile", "progress", "quiet", "verbose", "xml", "echo"},

@@ -4,7 +4,7 @@
 // switched on for one combination of the matrix after another, until the twin's image differs from
 // the oracle's as significantly as the suite requires.
 
-#include "Gpu/Twin.h"
+#include "Gpu/GpuTesting.h"
 #include "RunSettings.h"
 #include "Statistical/Comparison.h"
 #include "Statistical/Mutations/Mutant.h"
@@ -42,8 +42,8 @@ bool isSupported(const Combination& c) {
 /// p-value of the twin's image.
 double compareTwin(const Combination& c, const OracleRender& reference, std::string_view mutation) {
   MatrixSettings settings;
-  settings.renderer = [](const SceneView& view, const RenderSettings& render) {
-    return twin::render(view, render).film;
+  settings.renderer = [](const TestScene& scene, const RenderSettings& render) {
+    return renderTwin(scene, render).film;
   };
   activeMutation = mutation.empty() ? 0 : mutationKey(mutation);
   const double probability = compareWithOracle(c, settings, reference).probability();

@@ -21,7 +21,7 @@ grep -lE '#include [<"](Eigen|itk|tbb|nlohmann|base|scene)' -r "$work/prefix/inc
 
 for kind in fenestra static; do
   cp -r "$example" "$work/$kind"
-  sed -i "s/Fenestra::fenestra/Fenestra::$kind/" "$work/$kind/CMakeLists.txt"
+  sed -i -e "s/Fenestra::fenestra/Fenestra::$kind/" -e '/find_package/p' "$work/$kind/CMakeLists.txt" # found twice
   cmake -S "$work/$kind" -B "$work/$kind" -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_BUILD_TYPE=Release >"$work/cmake.log" ||
     die "find_package(Fenestra): $(cat "$work/cmake.log")"
   cmake --build "$work/$kind" >>"$work/cmake.log" || die "$(cat "$work/cmake.log")"

@@ -202,11 +202,8 @@ Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings,
   renderSettings.samples = settings.samples;
   renderSettings.seed = makeSeed(c, settings, 0);
   renderSettings.integrator = settings.integrator;
-  const Film film = scene.fenestra.visitView([&](const SceneView& view) {
-    RenderMonitor monitor;
-    return settings.renderer ? settings.renderer(view, renderSettings)
-                             : render(view, renderSettings, monitor).film;
-  });
+  const Film film = settings.renderer ? settings.renderer(scene.fenestra, renderSettings)
+                                      : scene.fenestra.render(renderSettings).film;
   Outcome outcome{.combination = c,
                   .tileProbabilities = {},
                   .imageProbability = {},

@@ -20,7 +20,7 @@ struct MatrixSettings {
   std::uint64_t seed = 1;
   Integrator integrator = Integrator::simd; ///< of Fenestra
   /// Renders instead of Fenestra, if set.
-  std::function<Film(const SceneView&, const RenderSettings&)> renderer = {};
+  std::function<Film(const TestScene&, const RenderSettings&)> renderer = {};
 };
 
 struct Outcome {

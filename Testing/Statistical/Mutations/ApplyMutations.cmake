@@ -7,7 +7,8 @@ cmake_minimum_required(VERSION 3.25)
 
 string(REPLACE "," ";" LAYERS "${LAYERS}")
 foreach(layer ${LAYERS})
-  file(COPY "${FROM}/${layer}" DESTINATION "${TO}" FILES_MATCHING PATTERN "*.h" PATTERN "*.cxx" PATTERN "*.inl")
+  get_filename_component(parent "${TO}/${layer}" DIRECTORY)
+  file(COPY "${FROM}/${layer}" DESTINATION "${parent}" FILES_MATCHING PATTERN "*.h" PATTERN "*.cxx" PATTERN "*.inl")
 endforeach()
 
 file(READ "${MUTATIONS}" mutations)
