@@ -180,7 +180,7 @@ TEST(SilhouetteCells, OutlineShowsTheFocusAndStepsAtMostAVoxel) {
   }
   EXPECT_GT(hits, 1000);
   std::vector<double> steps;
-  for (const auto& [sample, depth] : clip.silhouette->halo()) {
+  for (const auto& [sample, rayMaximum, depth] : clip.silhouette->halo()) {
     const std::array<DepthQuery, 1> query{DepthQuery{
         clip.buffer->position(sample % clip.buffer->columns(), sample / clip.buffer->columns()),
         {150.0, 250.0}}};

@@ -1,8 +1,9 @@
-// Continuation of the exact boundary compared with known solutions: constants, a plate under
-// tension along a straight edge, and depth jumps.
+// Continuation of the exact boundary compared with known solutions: constants, a straight edge, and
+// depth jumps; and its dependence on the pitch.
 
 #include "ClippingTesting.h"
-#include "clip/surface/SmoothFill.h"
+#include "clip/portable/SmoothFill.h"
+#include "clip/surface/BufferFill.h"
 
 #include <gtest/gtest.h>
 
@@ -43,16 +44,19 @@ struct Sheet {
 TEST(SmoothFill, ConstantDepthContinuesAsConstant) {
   Sheet sheet(200,
               [](const Vec2& x) { return x.norm() < 20.0 ? std::optional(290.0) : std::nullopt; });
-  fillSmoothly(sheet.buffer, sheet.regions, 10.0);
+  fillSmoothly(sheet.buffer, sheet.regions, {}, 10.0);
   for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample)
     EXPECT_NEAR(sheet.buffer.at(sample), 290.0, 1e-4);
 }
 
-/// Solution of u'''' = u'' / length^2 with u(0) = 0, u'(0) = slope and u' = 0 at the buffer's end.
+/// Along a straight edge of constant depth, the far surface solves u'''' = u'' / length^2 with its
+/// slope at the edge and the slope 0 at the buffer's end; the near surface is slope * x * exp(-x /
+/// d) at the distance x.
 class StraightEdge : public ::testing::TestWithParam<std::pair<double, double>> {};
 
-TEST_P(StraightEdge, FillEqualsAPlateUnderTension) {
+TEST_P(StraightEdge, FillHasTheSlopeAndLevelsOff) {
   const auto [slope, length] = GetParam();
+  const double reach = nearFraction * length;
   for (const int pixels : {64, 128, 256, 512}) {
     Sheet sheet(pixels, [slope = slope](const Vec2& x) {
       return x.x() < -20.0 ? std::optional(300.0 + slope * (x.x() + 20.0)) : std::nullopt;
@@ -61,18 +65,21 @@ TEST_P(StraightEdge, FillEqualsAPlateUnderTension) {
     for (std::int64_t column = 0; column < sheet.buffer.columns(); ++column)
       (sheet.isFocus(column) ? edge : end) = sheet.position(column).x();
     const double range = (end - edge) / length;
-    fillSmoothly(sheet.buffer, sheet.regions, length);
-    const double clampedSlope = std::clamp(slope, -maxBoundarySlope, maxBoundarySlope);
+    fillSmoothly(sheet.buffer, sheet.regions, {}, length);
+    const double farSlope = std::clamp(slope, -maxFarSlope, maxFarSlope);
+    const double nearSlope = std::clamp(slope - farSlope, -maxBoundarySlope, maxBoundarySlope);
     double worst = 0.0;
     for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample) {
-      const double x = (sheet.position(sample).x() - edge) / length;
+      const double x = sheet.position(sample).x() - edge;
+      const double far =
+          farSlope * length * (std::cosh(range) - std::cosh(range - x / length)) / std::sinh(range);
       const double expected =
-          300.0 + slope * (edge + 20.0) +
-          clampedSlope * length * (std::cosh(range) - std::cosh(range - x)) / std::sinh(range);
+          300.0 + slope * (edge + 20.0) + far + nearSlope * x * std::exp(-x / reach);
       if (!sheet.isFocus(sample))
         worst = std::max(worst, std::abs(sheet.buffer.at(sample) - expected));
     }
-    EXPECT_LT(worst, 0.08 * std::abs(clampedSlope) * length) << pixels;
+    // Samples farther apart than the reach do not resolve the near surface.
+    EXPECT_LT(worst, 0.1 * (reach + sheet.camera.pixelPitch())) << pixels;
   }
 }
 
@@ -84,13 +91,49 @@ TEST(SmoothFill, ContinuesTheSlopeOfACurvedBoundary) {
   Sheet sheet(512, [](const Vec2& x) {
     return x.norm() < 20.0 ? std::optional(300.0 + 0.01 * x.squaredNorm()) : std::nullopt;
   });
-  fillSmoothly(sheet.buffer, sheet.regions, 10.0);
+  fillSmoothly(sheet.buffer, sheet.regions, {}, 10.0);
   const double pitch = sheet.camera.pixelPitch();
   for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample) {
     const double r = sheet.position(sample).norm();
     if (!sheet.isFocus(sample) && r < 20.0 + 3.0 * pitch) {
-      EXPECT_NEAR(sheet.buffer.at(sample), 304.0 + 0.4 * (r - 20.0), 0.05) << r;
+      const double x = r - 20.0;
+      EXPECT_NEAR(sheet.buffer.at(sample), 304.0 + 0.4 * x * std::exp(-x / 2.5), 0.05) << r;
     }
+  }
+}
+
+/// A bowl in front of a deeper one: the boundary's depth jumps where they cross.
+std::optional<double> findBowlDepth(const Vec2& x) {
+  if (x.norm() < 20.0)
+    return 300.0 + 0.01 * x.squaredNorm();
+  if ((x - Vec2(25.0, 5.0)).norm() < 12.0)
+    return 325.0 + 0.2 * x.x();
+  return std::nullopt;
+}
+
+TEST(SmoothFill, HardlyDependsOnThePitch) {
+  Sheet fine(512, findBowlDepth);
+  fillSmoothly(fine.buffer, fine.regions, {}, 10.0);
+  const auto interpolate = [&](const Vec2& at) { // mean of the four samples around the position
+    const auto column = static_cast<std::int64_t>(fine.buffer.xAxis().index(at.x()));
+    const auto row = static_cast<std::int64_t>(fine.buffer.yAxis().index(at.y()));
+    double sum = 0.0;
+    for (const std::int64_t c : {column, column + 1})
+      for (const std::int64_t r : {row, row + 1})
+        sum += 0.25 * fine.buffer.at(fine.buffer.sample(c, r));
+    return sum;
+  };
+  for (const int pixels : {64, 128, 256}) {
+    Sheet coarse(pixels, findBowlDepth);
+    fillSmoothly(coarse.buffer, coarse.regions, {}, 10.0);
+    double sum = 0.0, count = 0.0;
+    for (std::int64_t sample = 0; sample < coarse.buffer.size(); ++sample)
+      if (const Vec2 at = coarse.position(sample);
+          !coarse.isFocus(sample) && at.cwiseAbs().maxCoeff() < 49.0) {
+        sum += std::abs(coarse.buffer.at(sample) - interpolate(at));
+        count += 1.0;
+      }
+    EXPECT_LT(sum / count, 0.4 * coarse.camera.pixelPitch()) << pixels;
   }
 }
 
@@ -100,7 +143,7 @@ TEST(SmoothFill, DepthJumpDoesNotOvershoot) {
       return std::nullopt;
     return x.y() < 0.0 ? 270.0 : 330.0;
   });
-  fillSmoothly(sheet.buffer, sheet.regions, 10.0);
+  fillSmoothly(sheet.buffer, sheet.regions, {}, 10.0);
   for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample) {
     EXPECT_GT(sheet.buffer.at(sample), 270.0 - 6.0);
     EXPECT_LT(sheet.buffer.at(sample), 330.0 + 6.0);
@@ -114,7 +157,7 @@ TEST(SmoothFill, JumpFlattensWithDistance) {
       return std::nullopt;
     return x.y() < 0.0 ? 270.0 : 330.0;
   });
-  fillSmoothly(sheet.buffer, sheet.regions, 10.0);
+  fillSmoothly(sheet.buffer, sheet.regions, {}, 10.0);
   const auto findMaxStep = [&](double x) {
     const auto column = static_cast<std::int64_t>(std::ceil(sheet.buffer.xAxis().index(x)));
     double maximum = 0.0;
@@ -143,7 +186,7 @@ TEST(SmoothFill, FillsBuffersOfAnyShape) {
           sheet.buffer.set(sample, infinity);
           ++contextCount;
         }
-      fillSmoothly(sheet.buffer, sheet.regions, 5.0);
+      fillSmoothly(sheet.buffer, sheet.regions, {}, 5.0);
       for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample)
         ASSERT_NEAR(sheet.buffer.at(sample), 280.0, 60.0)
             << width << ' ' << pixels << ' ' << contextCount;

@@ -75,39 +75,25 @@ struct WeightedDepth {
   double depth, weight;
 };
 
-/// Finds the halo samples around a sample.
-class HaloSearch {
-public:
-  HaloSearch(const DepthBuffer& buffer, const std::vector<SilhouetteCells::HaloSample>& halo)
-      : m_buffer(buffer), m_halo(halo), m_indices(static_cast<std::size_t>(buffer.size()), -1) {
-    for (std::size_t i = 0; i < halo.size(); ++i)
-      m_indices[static_cast<std::size_t>(halo[i].sample)] = static_cast<std::int32_t>(i);
+/// Ray maxima of the halo within 2.5 `sigma` samples of a sample, with Gaussian weights. Where
+/// `sigma` is large, only some of them, which bounds the time in close views.
+std::vector<WeightedDepth> collectMaxima(const std::vector<SilhouetteCells::HaloSample>& halo,
+                                         std::int64_t columns, std::int64_t sample, double sigma) {
+  const std::int64_t column = sample % columns, row = sample / columns;
+  const auto radius = static_cast<std::int64_t>(std::ceil(2.5 * sigma));
+  const auto stride = static_cast<std::size_t>(1.0 + sigma / 16.0);
+  const auto first = std::ranges::lower_bound(halo, (row - radius) * columns, {},
+                                              &SilhouetteCells::HaloSample::sample);
+  std::vector<WeightedDepth> found;
+  for (auto i = static_cast<std::size_t>(first - halo.begin());
+       i < halo.size() && halo[i].sample < (row + radius + 1) * columns; i += stride) {
+    const auto x = static_cast<double>(halo[i].sample % columns - column);
+    const auto y = static_cast<double>(halo[i].sample / columns - row);
+    if (std::abs(x) <= static_cast<double>(radius))
+      found.push_back({halo[i].rayMaximum, std::exp(-0.5 * (x * x + y * y) / (sigma * sigma))});
   }
-
-  /// Depths of the halo within 2.5 `sigma` samples, with Gaussian weights.
-  std::vector<WeightedDepth> collect(std::int64_t sample, double sigma) const {
-    const std::int64_t column = sample % m_buffer.columns(), row = sample / m_buffer.columns();
-    const auto radius = static_cast<std::int64_t>(std::ceil(2.5 * sigma));
-    std::vector<WeightedDepth> found;
-    for (std::int64_t r = std::max<std::int64_t>(row - radius, 0);
-         r <= std::min(row + radius, m_buffer.rows() - 1); ++r)
-      for (std::int64_t c = std::max<std::int64_t>(column - radius, 0);
-           c <= std::min(column + radius, m_buffer.columns() - 1); ++c) {
-        const std::int32_t index = m_indices[static_cast<std::size_t>(m_buffer.sample(c, r))];
-        if (index < 0)
-          continue;
-        const auto x = static_cast<double>(c - column), y = static_cast<double>(r - row);
-        found.push_back({m_halo[static_cast<std::size_t>(index)].depth,
-                         std::exp(-0.5 * (x * x + y * y) / (sigma * sigma))});
-      }
-    return found;
-  }
-
-private:
-  const DepthBuffer& m_buffer;
-  const std::vector<SilhouetteCells::HaloSample>& m_halo;
-  std::vector<std::int32_t> m_indices; ///< per sample of the buffer; -1: not in the halo
-};
+  return found;
+}
 
 /// Weighted mean of the depths that differ from their weighted median by at most `limit`, mm.
 double averageNearMedian(std::vector<WeightedDepth> depths, double limit) {
@@ -225,7 +211,7 @@ void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) 
       const Interval depths = joinDepthBounds(buffer, column, row);
       if (depths.isEmpty())
         continue;
-      m_halo.push_back({sample, 0.0});
+      m_halo.push_back({sample, 0.0, 0.0});
       depthQueries.push_back({buffer.position(column, row), depths});
     }
   std::vector<DepthHit> hits(depthQueries.size());
@@ -237,7 +223,7 @@ void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) 
   std::size_t found = 0;
   for (std::size_t i = 0; i < m_halo.size(); ++i)
     if (hits[i].indicator > FocusCells::captureThreshold)
-      m_halo[found++] = {m_halo[i].sample, hits[i].depth};
+      m_halo[found++] = {m_halo[i].sample, hits[i].depth, hits[i].depth};
   m_halo.resize(found);
   smoothHalo(buffer);
 }
@@ -266,7 +252,7 @@ SilhouetteCells::Slots SilhouetteCells::findSlots(const FocusDepth& focus) const
   for (const HaloSample& halo : m_halo) {
     const std::int64_t column = halo.sample % buffer.columns(),
                        row = halo.sample / buffer.columns();
-    const double limit = halo.depth + tolerance;
+    const double limit = halo.rayMaximum + tolerance;
     std::int64_t nearest = 0; // squared distance of focus at the halo's depth; 0: none
     farther.clear();
     for (std::int64_t y = -radius; y <= radius; ++y)
@@ -288,20 +274,19 @@ SilhouetteCells::Slots SilhouetteCells::findSlots(const FocusDepth& focus) const
   return slots;
 }
 
-/// Replaces the halo's depths by their mean along the outline, with Gaussian weights of standard
-/// deviation 1.5 times the longest edge of the focus's voxels, from 2 to 16 samples. Depths that
-/// differ from the weighted median by more than four edges do not count: they belong to other parts
-/// of the focus.
+/// Sets the halo's depths to the mean of its ray maxima along the outline, with Gaussian weights of
+/// standard deviation 1.5 times the longest edge of the focus's voxels, at least two samples.
+/// Maxima that differ from the weighted median by more than four edges do not count: they belong to
+/// other parts of the focus.
 void SilhouetteCells::smoothHalo(const DepthBuffer& buffer) {
   const double edge = voxelEdge();
-  const double sigma = std::clamp(1.5 * edge / std::abs(buffer.xAxis().pitch), 2.0, 16.0);
-  const HaloSearch search(buffer, m_halo);
-  std::vector<double> depths(m_halo.size());
+  const double sigma = std::max(1.5 * edge / std::abs(buffer.xAxis().pitch), 2.0);
   tbb::parallel_for(std::size_t{0}, m_halo.size(), [&](std::size_t i) {
-    depths[i] = averageNearMedian(search.collect(m_halo[i].sample, sigma), 4.0 * edge);
+    std::vector<WeightedDepth> maxima =
+        collectMaxima(m_halo, buffer.columns(), m_halo[i].sample, sigma);
+    if (!maxima.empty())
+      m_halo[i].depth = averageNearMedian(std::move(maxima), 4.0 * edge);
   });
-  for (std::size_t i = 0; i < m_halo.size(); ++i)
-    m_halo[i].depth = depths[i];
 }
 
 void SilhouetteCells::move(double offset) {

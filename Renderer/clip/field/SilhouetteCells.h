@@ -50,7 +50,8 @@ public:
   /// Sample beside the focus whose ray has a maximum.
   struct HaloSample {
     std::int64_t sample;
-    double depth; ///< mm; mean of the ray maxima around it
+    double rayMaximum; ///< depth, mm
+    double depth;      ///< mm; mean of the ray maxima around it
   };
   const std::vector<HaloSample>& halo() const { return m_halo; }
 

@@ -2,7 +2,8 @@
 
 #include "base/Error.h"
 #include "base/Stopwatch.h"
-#include "clip/surface/SmoothFill.h"
+#include "clip/portable/SmoothFill.h"
+#include "clip/surface/BufferFill.h"
 #include "clip/surface/ThinPlateSpline.h"
 
 #include <tbb/parallel_for.h>
@@ -142,12 +143,6 @@ private:
   std::vector<double> m_x, m_y; ///< mm, of the columns and rows
 };
 
-/// Length, mm, over which the exact surface levels off from the slope of the focus. A fraction of
-/// the volume's diagonal that keeps the surface inside the volume's depth range.
-double computeLevelingLength(const Domain& volume) {
-  return 0.05 * (volume.grid().worldCorner(7) - volume.grid().worldCorner(0)).norm();
-}
-
 /// Sets -infinity outside the focus, where nothing is removed.
 void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
   for (std::int64_t sample = 0; sample < buffer.size(); ++sample)
@@ -183,12 +178,7 @@ void continueBelowFocus(DepthBuffer& buffer, const FocusDepth& focus) {
 /// Fills the surface with an exact boundary, starting at the halo.
 void fillFromHalo(DepthBuffer& buffer, const FocusDepth& focus, const SilhouetteCells& silhouette,
                   double length) {
-  std::vector<Region> known = focus.regions;
-  for (const auto& [sample, depth] : silhouette.halo()) {
-    buffer.set(sample, depth);
-    known[static_cast<std::size_t>(sample)] = Region::focus;
-  }
-  fillSmoothly(buffer, known, length);
+  fillSmoothly(buffer, focus.regions, silhouette.halo(), length);
   continueBelowFocus(buffer, focus);
 }
 
@@ -237,7 +227,8 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   } else if (options.boundary == Boundary::exact) {
     silhouette = std::make_shared<SilhouetteCells>(tracer, surface.shown);
     *buffer = surface.shown.depth;
-    fillFromHalo(*buffer, surface.shown, *silhouette, computeLevelingLength(volume));
+    const Vec3 diagonal = volume.grid().worldCorner(7) - volume.grid().worldCorner(0);
+    fillFromHalo(*buffer, surface.shown, *silhouette, levelingLength(diagonal.norm()));
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
     surface.splineSeconds = stopwatch.lap();

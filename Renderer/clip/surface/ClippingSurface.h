@@ -23,7 +23,8 @@ enum class SurfaceMode {
 /// How the surface continues from the focus into the context.
 enum class Boundary {
   spline, ///< as in the paper (CITATION.cff): a thin plate spline, fitted to control points
-  exact,  ///< from all boundary points of the focus, with the slope of the focus (SmoothFill.h)
+  exact,  ///< from all boundary points of the focus, with the slope of the focus
+          ///< (clip/portable/SmoothFill.h)
 };
 
 struct SurfaceOptions {

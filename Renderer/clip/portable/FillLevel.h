@@ -1,6 +1,8 @@
 #pragma once
 // One level of the multigrid solver in SmoothFill.cxx.
 
+#include "clip/portable/ParallelLoop.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,7 +31,6 @@ public:
       const double width = i == 0 ? after : i == last ? before : 0.5 * (before + after);
       m_before.push_back(weight(width * before));
       m_after.push_back(weight(width * after));
-      m_width.push_back(width > 0.0 ? width : 1.0);
       m_maxWeightSum = std::max(m_maxWeightSum, double{m_before[i]} + m_after[i]);
     }
   }
@@ -47,13 +48,12 @@ public:
   Stencil stencil(std::size_t i) const { return {m_before[i], m_after[i]}; }
   const float* before() const { return m_before.data(); }
   const float* after() const { return m_after.data(); }
-  double maxWeightSum() const { return m_maxWeightSum; }   ///< largest before + after
-  double width(std::size_t i) const { return m_width[i]; } ///< of sample i, mm
+  double maxWeightSum() const { return m_maxWeightSum; } ///< largest before + after
 
 private:
   static float weight(double area) { return area > 0.0 ? static_cast<float>(1.0 / area) : 0.0f; }
 
-  std::vector<double> m_at, m_width;
+  std::vector<double> m_at;
   std::vector<float> m_before, m_after; ///< of the stencils
   double m_maxWeightSum = 0.0;
 };
@@ -73,8 +73,6 @@ public:
   std::size_t columns() const { return m_x.size(); }
   std::size_t rows() const { return m_y.size(); }
   bool isSmall() const { return std::max(columns(), rows()) <= 8; }
-  /// True if solve() is fast and needs little memory.
-  bool isSolvable() const { return columns() * rows() <= 8192; }
   /// Smallest sample spacing, mm.
   double pitch() const {
     return 1.0 / std::sqrt(0.5 * std::max(m_x.maxWeightSum(), m_y.maxWeightSum()));
@@ -102,14 +100,12 @@ public:
   void extendBoundary(double length);
 
   /// Initializes the free samples by cubic interpolation of the coarser level.
-  void prolongate(const FillLevel& coarse);
+  void prolongate(const FillLevel& coarse, const ParallelLoop& loop);
 
-  /// Performs `steps` Chebyshev iterations for  L L u - L u / length² = 0, L the Laplacian, at the
-  /// free samples near the boundary. Elsewhere the coarser level is accurate enough.
-  void relax(double length, int steps);
-
-  /// Solves directly; for a few thousand samples.
-  void solve(double length);
+  /// Performs `steps` Chebyshev iterations for  L L u - 2 L u / length² + u / length⁴ = 0, L the
+  /// Laplacian, at the free samples near the boundary. Elsewhere the coarser level is accurate
+  /// enough, or u nearly 0.
+  void relax(double length, int steps, const ParallelLoop& loop);
 
 private:
   /// Focus sample next to free ones. There, L u = `fixed` + sum of weights * depths of the free
@@ -119,13 +115,6 @@ private:
     float fixed = 0.0f;
     std::array<float, 4> weights{}; ///< per side of the sample
   };
-
-  template <typename Function>
-  void forEachFree(const Function& function) const {
-    for (std::size_t at = 0; at < m_free.size(); ++at)
-      if (m_free[at] != 0.0f)
-        function(at);
-  }
 
   struct Neighbor {
     std::size_t side, at;
@@ -164,22 +153,29 @@ private:
   /// Finds the focus samples next to free ones.
   void findBoundary();
 
-  /// Computes m_boundary. `stiffness`: largest factor on weights at the boundary.
-  void computeBoundary(float stiffness);
+  /// Computes m_boundary.
+  void computeBoundary();
 
-  BoundarySample makeBoundarySample(std::size_t at, float stiffness) const;
+  /// Largest factor on weights at the boundary; larger values only slow convergence.
+  static constexpr float maxStiffness = 3.0f;
+  BoundarySample makeBoundarySample(std::size_t at) const;
 
   /// Computes the Laplacian L u of the depths along `runs` and at the boundary.
-  void applyLaplacian(const std::vector<SampleRun>& runs, float* laplacian) const;
+  void applyLaplacian(const std::vector<SampleRun>& runs, float* laplacian,
+                      const ParallelLoop& loop) const;
 
+  /// One step of the iteration.
+  struct ChebyshevStep {
+    float momentum, step;
+  };
   void updateDepths(const std::vector<SampleRun>& runs, const float* laplacian, float* change,
-                    float tension, float momentum, float step);
+                    float tension, const ChebyshevStep& by, const ParallelLoop& loop);
 
   RowStencil rowStencil(const SampleRun& run) const;
 
   FillAxis m_x, m_y;
   std::size_t m_stride;
-  std::vector<float> m_depth;    ///< mm, minus the buffer's reference
+  std::vector<float> m_depth;    ///< mm
   std::vector<float> m_free;     ///< 1: free; 0: focus or margin
   std::vector<float> m_coverage; ///< fraction of each sample's area that is focus
   std::vector<BoundarySample> m_boundary;

@@ -1,22 +1,17 @@
-#include "clip/surface/FillLevel.h"
+#include "clip/portable/FillLevel.h"
 
-#include "clip/surface/SmoothFill.h"
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "clip/portable/SmoothFill.h"
 
 namespace fenestra::core {
 namespace {
 
 /// Calls function(row) for each row, in parallel, in chunks of several short rows.
 template <typename Function>
-void forEachRow(const FillLevel& level, const Function& function) {
-  const std::size_t grain = 1 + 32768 / level.columns();
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.rows(), grain),
-                    [&](const auto& range) {
-                      for (std::size_t row = range.begin(); row != range.end(); ++row)
-                        function(row);
-                    });
+void forEachRow(const FillLevel& level, const ParallelLoop& loop, const Function& function) {
+  loop(level.rows(), 1 + 32768 / level.columns(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row != end; ++row)
+      function(row);
+  });
 }
 
 } // namespace
@@ -101,11 +96,11 @@ float FillLevel::extrapolate(std::size_t at, const std::vector<float>& own,
   return sum / count;
 }
 
-void FillLevel::prolongate(const FillLevel& coarse) {
+void FillLevel::prolongate(const FillLevel& coarse, const ParallelLoop& loop) {
   // Interpolation weights of four neighboring coarse samples, for the first of the two fine samples
   // in a coarse one; mirrored for the second.
   constexpr float weights[] = {-5.0f / 128, 35.0f / 128, 105.0f / 128, -7.0f / 128};
-  forEachRow(*this, [&](std::size_t row) {
+  forEachRow(*this, loop, [&](std::size_t row) {
     const std::size_t count = coarse.columns();
     const auto clampIndex = [](std::size_t i, std::ptrdiff_t step, std::size_t size) {
       const auto at = static_cast<std::ptrdiff_t>(i) + step;
@@ -149,17 +144,17 @@ void FillLevel::findBoundary() {
   }
 }
 
-void FillLevel::computeBoundary(float stiffness) {
+void FillLevel::computeBoundary() {
   if (m_boundary.empty())
     findBoundary();
   for (BoundarySample& sample : m_boundary)
-    sample = makeBoundarySample(sample.at, stiffness);
+    sample = makeBoundarySample(sample.at);
 }
 
-FillLevel::BoundarySample FillLevel::makeBoundarySample(std::size_t at, float stiffness) const {
+FillLevel::BoundarySample FillLevel::makeBoundarySample(std::size_t at) const {
   BoundarySample sample{at};
   // Only the part of the sample's area outside the focus bends.
-  const float bend = 1.0f / std::max(1.0f - m_coverage[at], 1.0f / stiffness);
+  const float bend = 1.0f / std::max(1.0f - m_coverage[at], 1.0f / maxStiffness);
   forEachNeighbor(at, [&](const Neighbor& neighbor) {
     const float weight = bend * neighbor.weight;
     if (m_free[neighbor.at] != 0.0f) {

@@ -1,9 +1,5 @@
-// Iterative and direct solver of FillLevel's equations.
-#include "clip/surface/FillLevel.h"
-
-#include <Eigen/SparseCholesky>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+// Iterative solver of FillLevel's equations.
+#include "clip/portable/FillLevel.h"
 
 #include <memory>
 
@@ -77,9 +73,6 @@ private:
   std::vector<std::uint8_t> m_marks;
 };
 
-/// Stiffness in relax(); larger values only slow convergence.
-constexpr float maxStiffness = 3.0f;
-
 void applyLaplacianRow(const RowStencil& l, const float* in, float* __restrict out) {
   for (std::size_t i = 0; i < l.count; ++i)
     out[i] = l(in, i);
@@ -87,27 +80,31 @@ void applyLaplacianRow(const RowStencil& l, const float* in, float* __restrict o
 
 /// One step of the iteration along a row: updates the depths u from their Laplacian L u.
 void updateRow(const RowStencil& l, const float* laplacian, const float* free, float tension,
-               float momentum, float step, float* __restrict change, float* __restrict depth) {
+               float mass, float momentum, float step, float* __restrict change,
+               float* __restrict depth) {
   for (std::size_t i = 0; i < l.count; ++i) {
-    change[i] = momentum * change[i] + free[i] * step * (tension * laplacian[i] - l(laplacian, i));
+    const float force = tension * laplacian[i] - l(laplacian, i) - mass * depth[i];
+    change[i] = momentum * change[i] + free[i] * step * force;
     depth[i] += change[i];
   }
 }
 
 /// Calls function(run) for each run, in parallel, in chunks of several short runs.
 template <typename Function>
-void forEachRun(const std::vector<SampleRun>& runs, const Function& function) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), 256), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i)
+void forEachRun(const std::vector<SampleRun>& runs, const ParallelLoop& loop,
+                const Function& function) {
+  loop(runs.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i != end; ++i)
       function(runs[i]);
   });
 }
 
 } // namespace
 
-void FillLevel::applyLaplacian(const std::vector<SampleRun>& runs, float* laplacian) const {
+void FillLevel::applyLaplacian(const std::vector<SampleRun>& runs, float* laplacian,
+                               const ParallelLoop& loop) const {
   const std::array<std::ptrdiff_t, 4> offsets = this->offsets();
-  forEachRun(runs, [&](const SampleRun& run) {
+  forEachRun(runs, loop, [&](const SampleRun& run) {
     const std::size_t first = index(run.begin, run.row);
     applyLaplacianRow(rowStencil(run), &m_depth[first], laplacian + first);
   });
@@ -120,11 +117,12 @@ void FillLevel::applyLaplacian(const std::vector<SampleRun>& runs, float* laplac
 }
 
 void FillLevel::updateDepths(const std::vector<SampleRun>& runs, const float* laplacian,
-                             float* change, float tension, float momentum, float step) {
-  forEachRun(runs, [&](const SampleRun& run) {
+                             float* change, float tension, const ChebyshevStep& by,
+                             const ParallelLoop& loop) {
+  forEachRun(runs, loop, [&](const SampleRun& run) {
     const std::size_t first = index(run.begin, run.row);
-    updateRow(rowStencil(run), laplacian + first, &m_free[first], tension, momentum, step,
-              change + first, &m_depth[first]);
+    updateRow(rowStencil(run), laplacian + first, &m_free[first], tension,
+              0.25f * tension * tension, by.momentum, by.step, change + first, &m_depth[first]);
   });
 }
 
@@ -133,21 +131,21 @@ RowStencil FillLevel::rowStencil(const SampleRun& run) const {
           run.end - run.begin, static_cast<std::ptrdiff_t>(m_stride)};
 }
 
-void FillLevel::relax(double length, int steps) {
-  computeBoundary(maxStiffness);
+void FillLevel::relax(double length, int steps, const ParallelLoop& loop) {
+  computeBoundary();
   SampleTiles tiles(columns(), rows());
   for (const BoundarySample& sample : m_boundary)
     tiles.markNeighborhood(sample.at % m_stride - 1, sample.at / m_stride - 1);
   const std::vector<SampleRun> updatedRuns = tiles.runs(0), laplacianRuns = tiles.runs(1);
-  const double tension = 1.0 / (length * length);
+  const double tension = 2.0 / (length * length);
   const double maxWeightSum = 2.0 * (m_x.maxWeightSum() + m_y.maxWeightSum());
-  const double high =
-      maxStiffness * maxWeightSum * (maxWeightSum + tension); // bounds the operator's eigenvalues
-  const double low = high / (0.25 * steps * steps);           // lowest that the steps damp well
+  const double high = maxStiffness * (maxWeightSum + 0.5 * tension) *
+                      (maxWeightSum + 0.5 * tension); // bounds the operator's eigenvalues
+  const double low = high / (0.25 * steps * steps);   // lowest that the steps damp well
   const double center = 0.5 * (high + low), radius = 0.5 * (high - low);
   // Uninitialized, since only samples near the boundary are accessed.
-  const auto laplacian = std::make_unique_for_overwrite<float[]>(m_depth.size());
-  const auto change = std::make_unique_for_overwrite<float[]>(m_depth.size());
+  const std::unique_ptr<float[]> laplacian(new float[m_depth.size()]);
+  const std::unique_ptr<float[]> change(new float[m_depth.size()]);
   for (const SampleRun& run : laplacianRuns) // stencils read one sample further
     for (const std::size_t row : {run.row, run.row + 1, run.row + 2}) {
       const std::size_t first = row * m_stride + run.begin;
@@ -158,66 +156,14 @@ void FillLevel::relax(double length, int steps) {
   double rho = radius / center;
   double momentum = 0.0, step = 1.0 / center;
   for (int i = 0; i < steps; ++i) {
-    applyLaplacian(laplacianRuns, laplacian.get());
+    applyLaplacian(laplacianRuns, laplacian.get(), loop);
     updateDepths(updatedRuns, laplacian.get(), change.get(), static_cast<float>(tension),
-                 static_cast<float>(momentum), static_cast<float>(step));
+                 {static_cast<float>(momentum), static_cast<float>(step)}, loop);
     const double next = 1.0 / (2.0 * center / radius - rho);
     momentum = next * rho;
     step = 2.0 * next / radius;
     rho = next;
   }
-}
-
-void FillLevel::solve(double length) {
-  computeBoundary(1e6f);
-  std::vector<int> unknown(m_depth.size(), -1);
-  int count = 0;
-  forEachFree([&](std::size_t at) { unknown[at] = count++; });
-  if (count == 0)
-    return;
-  std::vector<const BoundarySample*> boundaryBySample(m_depth.size(), nullptr);
-  for (const BoundarySample& sample : m_boundary)
-    boundaryBySample[sample.at] = &sample;
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
-  std::vector<Eigen::Triplet<double>> entries;
-  // Adds `factor` times the Laplacian at a sample to an equation; lower triangle only (symmetric).
-  const auto addLaplacian = [&](int row, std::size_t at, double factor) {
-    const auto add = [&](std::size_t neighbor, double weight) {
-      if (unknown[neighbor] >= 0) {
-        if (unknown[neighbor] <= row)
-          entries.emplace_back(row, unknown[neighbor], factor * weight);
-      } else
-        right[row] -= factor * weight * m_depth[neighbor];
-    };
-    if (const BoundarySample* const edge = boundaryBySample[at]) {
-      right[row] -= factor * edge->fixed;
-      for (std::size_t side = 0; side < 4; ++side)
-        if (edge->weights[side] != 0.0f)
-          add(at + static_cast<std::size_t>(offsets()[side]), edge->weights[side]);
-      return;
-    }
-    double sum = 0.0;
-    forEachNeighbor(at, [&](const Neighbor& neighbor) {
-      add(neighbor.at, double{neighbor.weight});
-      sum += double{neighbor.weight};
-    });
-    add(at, -sum);
-  };
-  forEachFree([&](std::size_t at) {
-    // Area of the sample, mm²; area * L is symmetric.
-    const double area = m_x.width(at % m_stride - 1) * m_y.width(at / m_stride - 1);
-    double sum = 1.0 / (length * length);
-    forEachNeighbor(at, [&](const Neighbor& neighbor) {
-      addLaplacian(unknown[at], neighbor.at, area * double{neighbor.weight});
-      sum += double{neighbor.weight};
-    });
-    addLaplacian(unknown[at], at, -area * sum);
-  });
-  Eigen::SparseMatrix<double> matrix(count, count);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::VectorXd depths =
-      Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
-  forEachFree([&](std::size_t at) { m_depth[at] = static_cast<float>(depths[unknown[at]]); });
 }
 
 } // namespace fenestra::core

@@ -1,0 +1,257 @@
+#include "clip/portable/FarSurface.h"
+
+#include "clip/portable/BandSolver.h"
+#include "clip/portable/SmoothFill.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace fenestra::core {
+namespace {
+
+/// Widths of the samples along an axis, mm; 1 for a single sample.
+std::vector<double> findWidths(const std::vector<double>& coordinates) {
+  if (coordinates.size() == 1)
+    return {1.0};
+  std::vector<double> widths(coordinates.size(), 0.0);
+  for (std::size_t i = 0; i + 1 < coordinates.size(); ++i) {
+    const double half = 0.5 * std::abs(coordinates[i + 1] - coordinates[i]);
+    widths[i] += half;
+    widths[i + 1] += half;
+  }
+  return widths;
+}
+
+/// Smallest distance of two neighboring samples, mm; 0 for a single one.
+double findSmallestSpacing(const FillGrid& grid) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>* const axis : {&grid.x, &grid.y})
+    for (std::size_t i = 0; i + 1 < axis->size(); ++i)
+      smallest = std::min(smallest, std::abs((*axis)[i + 1] - (*axis)[i]));
+  return std::isfinite(smallest) ? smallest : 0.0;
+}
+
+/// Side of a known sample toward a sample that is not known.
+struct BoundarySide {
+  std::size_t column, row; ///< of the known sample
+  bool isAlongX;           ///< the two samples are neighbors in x
+  double length;           ///< mm
+  double slope;            ///< of the known depths across the side, along x or y, limited
+};
+
+/// Slope at `at` from the sample before it, if known: its limit along an axis of coordinates.
+double limitSlope(const FillGrid& grid, std::size_t at, std::size_t before, double distance) {
+  if (grid.isKnown[before] == 0)
+    return 0.0;
+  const double rise = double{grid.depths[at]} - double{grid.depths[before]};
+  const double limit = maxFarSlope * std::abs(distance);
+  return std::clamp(rise, -limit, limit) / distance;
+}
+
+template <typename Function>
+void forEachBoundarySide(const FillGrid& grid, const Function& function) {
+  const std::size_t columns = grid.x.size(), rows = grid.y.size();
+  const std::vector<double> widths = findWidths(grid.x), heights = findWidths(grid.y);
+  // Of the samples before and after one, calls for those that are not known.
+  const auto visit = [&](BoundarySide side, const std::vector<double>& axis, std::size_t i,
+                         std::size_t at, std::size_t stride) {
+    for (const bool isAfter : {false, true}) {
+      const bool hasNext = isAfter ? i + 1 < axis.size() : i > 0;
+      const bool hasPrevious = isAfter ? i > 0 : i + 1 < axis.size();
+      if (!hasNext || grid.isKnown[isAfter ? at + stride : at - stride] != 0)
+        continue;
+      side.slope = !hasPrevious ? 0.0
+                   : isAfter    ? limitSlope(grid, at, at - stride, axis[i] - axis[i - 1])
+                                : limitSlope(grid, at, at + stride, axis[i] - axis[i + 1]);
+      function(side);
+    }
+  };
+  for (std::size_t row = 0; row < rows; ++row)
+    for (std::size_t column = 0; column < columns; ++column)
+      if (const std::size_t at = row * columns + column; grid.isKnown[at] != 0) {
+        visit({column, row, true, heights[row], 0.0}, grid.x, column, at, 1);
+        visit({column, row, false, widths[column], 0.0}, grid.y, row, at, columns);
+      }
+}
+
+/// The three splines at a position: their values, and slopes per pitch.
+struct Splines {
+  std::array<double, 3> values, slopes;
+
+  explicit Splines(double t)
+      : values{0.5 * (0.5 - t) * (0.5 - t), 0.75 - t * t, 0.5 * (0.5 + t) * (0.5 + t)},
+        slopes{t - 0.5, -2.0 * t, t + 0.5} {}
+};
+
+/// Term of a linear combination of unknowns.
+struct Term {
+  std::size_t unknown;
+  double factor;
+};
+
+} // namespace
+
+/// Normal equations of a sum of squares.
+struct FarSurface::Equations {
+  Equations(std::size_t count, std::size_t width) : matrix(count, width), right(count, 0.0) {}
+
+  /// Adds weight * (combination of the terms - value)².
+  template <typename Terms>
+  void addSquare(const Terms& terms, double weight, double value) {
+    for (const Term& a : terms) {
+      right[a.unknown] += weight * a.factor * value;
+      for (const Term& b : terms)
+        if (b.unknown <= a.unknown)
+          matrix.at(a.unknown, b.unknown) += weight * a.factor * b.factor;
+    }
+  }
+
+  BandSolver matrix;
+  std::vector<double> right;
+};
+
+FarSurface::FarSurface(const FillGrid& grid, double length) {
+  placeNodes(grid, length);
+  Equations equations(m_x.count * m_y.count, 2 * m_x.count + 2);
+  addEnergy(equations, findOpenness(grid), length);
+  if (addBoundary(equations, grid, length))
+    m_weights = equations.matrix.solve(std::move(equations.right));
+  else
+    m_weights = std::move(equations.right); // 0
+}
+
+/// Nodes up to a few lengths from the known samples, where the surface is level. They are a quarter
+/// of `length` apart, farther only if the samples are, or the view is much wider than the volume.
+void FarSurface::placeNodes(const FillGrid& grid, double length) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  double left = infinite, right = -infinite, bottom = infinite, top = -infinite;
+  for (std::size_t sample = 0; sample < grid.isKnown.size(); ++sample)
+    if (grid.isKnown[sample] != 0) {
+      const double x = grid.x[sample % grid.x.size()], y = grid.y[sample / grid.x.size()];
+      left = std::min(left, x);
+      right = std::max(right, x);
+      bottom = std::min(bottom, y);
+      top = std::max(top, y);
+    }
+  const double margin = 4.0 * length;
+  const auto [minX, maxX] = std::minmax(grid.x.front(), grid.x.back());
+  const auto [minY, maxY] = std::minmax(grid.y.front(), grid.y.back());
+  left = std::max(left - margin, minX);
+  right = std::min(right + margin, maxX);
+  bottom = std::max(bottom - margin, minY);
+  top = std::min(top + margin, maxY);
+  constexpr double maxNodes = 96.0; // per axis
+  m_pitch = std::max(
+      {0.25 * length, findSmallestSpacing(grid), std::max(right - left, top - bottom) / maxNodes});
+  m_x = makeAxis(left, right);
+  m_y = makeAxis(bottom, top);
+}
+
+/// Nodes at multiples of the pitch, so that they do not move with the samples.
+FarSurface::Axis FarSurface::makeAxis(double low, double high) const {
+  const double first = std::round(low / m_pitch) - 1.0, last = std::round(high / m_pitch) + 1.0;
+  return {first * m_pitch, static_cast<std::size_t>(last - first) + 1};
+}
+
+/// Positions beyond the nodes are moved to them.
+FarSurface::Position FarSurface::locate(const Axis& axis, double at) const {
+  const double position = (at - axis.first) / m_pitch;
+  const double node = std::clamp(std::round(position), 1.0, static_cast<double>(axis.count - 2));
+  return {static_cast<std::size_t>(node) - 1, std::clamp(position - node, -0.5, 0.5)};
+}
+
+/// Per node, the fraction of its area that is not known, for the plate lies only there; a little
+/// everywhere, so that all depths are defined.
+std::vector<double> FarSurface::findOpenness(const FillGrid& grid) const {
+  std::vector<double> openness(m_x.count * m_y.count, 1.0);
+  const std::vector<double> widths = findWidths(grid.x), heights = findWidths(grid.y);
+  for (std::size_t row = 0; row < grid.y.size(); ++row) {
+    const auto [firstRow, offsetY] = locate(m_y, grid.y[row]);
+    const Splines y(offsetY);
+    for (std::size_t column = 0; column < grid.x.size(); ++column) {
+      if (grid.isKnown[row * grid.x.size() + column] == 0)
+        continue;
+      const auto [firstColumn, offsetX] = locate(m_x, grid.x[column]);
+      const Splines x(offsetX);
+      const double area = widths[column] * heights[row] / (m_pitch * m_pitch);
+      for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t i = 0; i < 3; ++i)
+          openness[index(firstColumn + i, firstRow + j)] -= area * x.values[i] * y.values[j];
+    }
+  }
+  constexpr double least = 1e-3;
+  for (double& open : openness)
+    open = std::max(open, least);
+  return openness;
+}
+
+/// Finite differences of the splines' weights, which are their exact second derivatives along each
+/// axis.
+void FarSurface::addEnergy(Equations& equations, const std::vector<double>& openness,
+                           double length) const {
+  const double bending = 1.0 / (m_pitch * m_pitch); // of a squared difference
+  const double tension = 1.0 / (length * length);
+  std::vector<Term> terms;
+  for (std::size_t row = 0; row < m_y.count; ++row)
+    for (std::size_t column = 0; column < m_x.count; ++column) {
+      const std::size_t at = index(column, row);
+      terms.clear();
+      const auto addNeighbor = [&](std::size_t neighbor) {
+        terms.push_back({neighbor, 1.0});
+        if (neighbor > at)
+          equations.addSquare(std::array{Term{at, -1.0}, Term{neighbor, 1.0}},
+                              tension * std::min(openness[at], openness[neighbor]), 0.0);
+      };
+      if (row > 0)
+        addNeighbor(at - m_x.count);
+      if (column > 0)
+        addNeighbor(at - 1);
+      if (column + 1 < m_x.count)
+        addNeighbor(at + 1);
+      if (row + 1 < m_y.count)
+        addNeighbor(at + m_x.count);
+      terms.push_back({at, -static_cast<double>(terms.size())});
+      equations.addSquare(terms, bending * openness[at], 0.0);
+    }
+}
+
+/// Returns whether there is a boundary.
+bool FarSurface::addBoundary(Equations& equations, const FillGrid& grid, double length) const {
+  const double a = 0.1 * length, b = 0.03 * length;
+  bool hasBoundary = false;
+  forEachBoundarySide(grid, [&](const BoundarySide& side) {
+    hasBoundary = true;
+    const auto [firstColumn, offsetX] = locate(m_x, grid.x[side.column]);
+    const auto [firstRow, offsetY] = locate(m_y, grid.y[side.row]);
+    const Splines x(offsetX), y(offsetY);
+    std::array<Term, 9> depth, slope;
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t node = index(firstColumn + i, firstRow + j);
+        depth[3 * j + i] = {node, x.values[i] * y.values[j]};
+        slope[3 * j + i] = {
+            node,
+            (side.isAlongX ? x.slopes[i] * y.values[j] : x.values[i] * y.slopes[j]) / m_pitch};
+      }
+    equations.addSquare(depth, side.length / (a * a * a),
+                        double{grid.depths[side.row * grid.x.size() + side.column]});
+    equations.addSquare(slope, side.length / b, side.slope);
+  });
+  return hasBoundary;
+}
+
+double FarSurface::operator()(double x, double y) const {
+  const auto [firstColumn, offsetX] = locate(m_x, x);
+  const auto [firstRow, offsetY] = locate(m_y, y);
+  const Splines across(offsetX), down(offsetY);
+  double depth = 0.0;
+  for (std::size_t j = 0; j < 3; ++j)
+    for (std::size_t i = 0; i < 3; ++i)
+      depth += down.values[j] * across.values[i] * m_weights[index(firstColumn + i, firstRow + j)];
+  return depth;
+}
+
+} // namespace fenestra::core
