@@ -252,7 +252,7 @@ SilhouetteCells::Slots SilhouetteCells::findSlots(const FocusDepth& focus) const
   for (const HaloSample& halo : m_halo) {
     const std::int64_t column = halo.sample % buffer.columns(),
                        row = halo.sample / buffer.columns();
-    const double limit = halo.rayMaximum + tolerance;
+    const double limit = std::max(halo.rayMaximum, halo.depth) + tolerance;
     std::int64_t nearest = 0; // squared distance of focus at the halo's depth; 0: none
     farther.clear();
     for (std::int64_t y = -radius; y <= radius; ++y)
