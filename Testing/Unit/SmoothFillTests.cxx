@@ -102,10 +102,11 @@ TEST(SmoothFill, ContinuesTheSlopeOfACurvedBoundary) {
   }
 }
 
-/// A bowl in front of a deeper one: the boundary's depth jumps where they cross.
+/// A wavy bowl in front of a deeper plane: the slopes of single samples at the boundary are steep
+/// and of either sign, and its depth jumps where the two cross.
 std::optional<double> findBowlDepth(const Vec2& x) {
   if (x.norm() < 20.0)
-    return 300.0 + 0.01 * x.squaredNorm();
+    return 300.0 + 0.01 * x.squaredNorm() + std::sin(2.1 * x.x()) * std::cos(1.7 * x.y());
   if ((x - Vec2(25.0, 5.0)).norm() < 12.0)
     return 325.0 + 0.2 * x.x();
   return std::nullopt;

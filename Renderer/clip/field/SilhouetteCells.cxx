@@ -87,10 +87,11 @@ std::vector<WeightedDepth> collectMaxima(const std::vector<SilhouetteCells::Halo
   std::vector<WeightedDepth> found;
   for (auto i = static_cast<std::size_t>(first - halo.begin());
        i < halo.size() && halo[i].sample < (row + radius + 1) * columns; i += stride) {
-    const auto x = static_cast<double>(halo[i].sample % columns - column);
-    const auto y = static_cast<double>(halo[i].sample / columns - row);
-    if (std::abs(x) <= static_cast<double>(radius))
-      found.push_back({halo[i].rayMaximum, std::exp(-0.5 * (x * x + y * y) / (sigma * sigma))});
+    const std::int64_t across = halo[i].sample % columns - column;
+    const std::int64_t down = halo[i].sample / columns - row;
+    const auto squaredDistance = static_cast<double>(across * across + down * down);
+    if (std::abs(across) <= radius)
+      found.push_back({halo[i].rayMaximum, std::exp(-0.5 * squaredDistance / (sigma * sigma))});
   }
   return found;
 }
