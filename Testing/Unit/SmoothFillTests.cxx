@@ -67,7 +67,7 @@ TEST_P(StraightEdge, FillHasTheSlopeAndLevelsOff) {
     const double range = (end - edge) / length;
     fillSmoothly(sheet.buffer, sheet.regions, {}, length);
     const double farSlope = std::clamp(slope, -maxFarSlope, maxFarSlope);
-    const double nearSlope = std::clamp(slope - farSlope, -maxBoundarySlope, maxBoundarySlope);
+    const double nearSlope = std::clamp(slope - farSlope, -maxNearSlope, maxNearSlope);
     double worst = 0.0;
     for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample) {
       const double x = sheet.position(sample).x() - edge;
@@ -79,7 +79,10 @@ TEST_P(StraightEdge, FillHasTheSlopeAndLevelsOff) {
         worst = std::max(worst, std::abs(sheet.buffer.at(sample) - expected));
     }
     // Samples farther apart than the reach do not resolve the near surface.
-    EXPECT_LT(worst, 0.1 * (reach + sheet.camera.pixelPitch())) << pixels;
+    const double pitch = sheet.camera.pixelPitch();
+    const double clampedSlope = std::clamp(slope, -1.0, 1.0);
+    EXPECT_LT(worst, 0.08 * std::abs(clampedSlope) * length + 0.01 * pitch) << pixels;
+    EXPECT_LT(worst, 0.1 * (reach + pitch)) << pixels;
   }
 }
 

@@ -75,8 +75,9 @@ struct WeightedDepth {
   double depth, weight;
 };
 
-/// Ray maxima of the halo within 2.5 `sigma` samples of a sample, with Gaussian weights. Where
-/// `sigma` is large, only some of them, which bounds the time in close views.
+/// Ray maxima of the halo, which is sorted by sample, within 2.5 `sigma` samples of a sample, with
+/// Gaussian weights. Where `sigma` is large, only some of them, which bounds the time in close
+/// views.
 std::vector<WeightedDepth> collectMaxima(const std::vector<SilhouetteCells::HaloSample>& halo,
                                          std::int64_t columns, std::int64_t sample, double sigma) {
   const std::int64_t column = sample % columns, row = sample / columns;
@@ -240,7 +241,8 @@ double SilhouetteCells::voxelEdge() const {
 /// Around each halo sample: the focus samples that are nearer to it than any focus at its depth, up
 /// to a voxel more. There must be such focus within `reach`: else the focus is not only a strip. A
 /// strip of one sample is always within reach: where pixels are as large as voxels, slots have no
-/// more.
+/// more. The depth of the halo is the deeper of its ray maximum and mean: the mean alone can be
+/// that of another part of the focus, and the maximum alone that of a nearer plane of voxels.
 SilhouetteCells::Slots SilhouetteCells::findSlots(const FocusDepth& focus) const {
   const DepthBuffer& buffer = focus.depth;
   const double tolerance = voxelEdge(), widest = std::min(voxelEdge(), 2.0); // mm

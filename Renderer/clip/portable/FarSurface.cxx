@@ -1,6 +1,7 @@
 #include "clip/portable/FarSurface.h"
 
 #include "clip/portable/BandSolver.h"
+#include "clip/portable/FillAxis.h"
 #include "clip/portable/SmoothFill.h"
 
 #include <algorithm>
@@ -12,28 +13,6 @@
 namespace fenestra::core {
 namespace {
 
-/// Widths of the samples along an axis, mm; 1 for a single sample.
-std::vector<double> findWidths(const std::vector<double>& coordinates) {
-  if (coordinates.size() == 1)
-    return {1.0};
-  std::vector<double> widths(coordinates.size(), 0.0);
-  for (std::size_t i = 0; i + 1 < coordinates.size(); ++i) {
-    const double half = 0.5 * std::abs(coordinates[i + 1] - coordinates[i]);
-    widths[i] += half;
-    widths[i + 1] += half;
-  }
-  return widths;
-}
-
-/// Smallest distance of two neighboring samples, mm; 0 for a single one.
-double findSmallestSpacing(const FillGrid& grid) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const std::vector<double>* const axis : {&grid.x, &grid.y})
-    for (std::size_t i = 0; i + 1 < axis->size(); ++i)
-      smallest = std::min(smallest, std::abs((*axis)[i + 1] - (*axis)[i]));
-  return std::isfinite(smallest) ? smallest : 0.0;
-}
-
 /// Side of a known sample toward a sample that is not known.
 struct BoundarySide {
   std::size_t column, row; ///< of the known sample
@@ -42,38 +21,39 @@ struct BoundarySide {
   double slope;            ///< of the known depths across the side, along x or y, limited
 };
 
-/// Slope at `at` from the sample before it, if known: its limit along an axis of coordinates.
-double limitSlope(const FillGrid& grid, std::size_t at, std::size_t before, double distance) {
-  if (grid.isKnown[before] == 0)
+/// Slope of the depths from one sample to another, of which the latter is known, along an axis on
+/// which they are `distance` (of either sign) apart: limited to maxFarSlope; 0 if the former is not
+/// known.
+double findSlope(const FillGrid& grid, std::size_t from, std::size_t to, double distance) {
+  if (grid.isKnown[from] == 0)
     return 0.0;
-  const double rise = double{grid.depths[at]} - double{grid.depths[before]};
-  const double limit = maxFarSlope * std::abs(distance);
-  return std::clamp(rise, -limit, limit) / distance;
+  const double slope = (double{grid.depths[to]} - double{grid.depths[from]}) / distance;
+  return std::clamp(slope, -maxFarSlope, maxFarSlope);
 }
 
+/// Calls function(side) for each side of the boundary.
 template <typename Function>
 void forEachBoundarySide(const FillGrid& grid, const Function& function) {
   const std::size_t columns = grid.x.size(), rows = grid.y.size();
-  const std::vector<double> widths = findWidths(grid.x), heights = findWidths(grid.y);
-  // Of the samples before and after one, calls for those that are not known.
+  const FillAxis x(grid.x), y(grid.y);
+  // The sides of a sample across an axis; `i`: its number on the axis, `stride`: to the next one.
   const auto visit = [&](BoundarySide side, const std::vector<double>& axis, std::size_t i,
                          std::size_t at, std::size_t stride) {
-    for (const bool isAfter : {false, true}) {
-      const bool hasNext = isAfter ? i + 1 < axis.size() : i > 0;
-      const bool hasPrevious = isAfter ? i > 0 : i + 1 < axis.size();
-      if (!hasNext || grid.isKnown[isAfter ? at + stride : at - stride] != 0)
-        continue;
-      side.slope = !hasPrevious ? 0.0
-                   : isAfter    ? limitSlope(grid, at, at - stride, axis[i] - axis[i - 1])
-                                : limitSlope(grid, at, at + stride, axis[i] - axis[i + 1]);
+    const bool hasBefore = i > 0, hasAfter = i + 1 < axis.size();
+    if (hasBefore && grid.isKnown[at - stride] == 0) {
+      side.slope = hasAfter ? findSlope(grid, at + stride, at, axis[i] - axis[i + 1]) : 0.0;
+      function(side);
+    }
+    if (hasAfter && grid.isKnown[at + stride] == 0) {
+      side.slope = hasBefore ? findSlope(grid, at - stride, at, axis[i] - axis[i - 1]) : 0.0;
       function(side);
     }
   };
   for (std::size_t row = 0; row < rows; ++row)
     for (std::size_t column = 0; column < columns; ++column)
       if (const std::size_t at = row * columns + column; grid.isKnown[at] != 0) {
-        visit({column, row, true, heights[row], 0.0}, grid.x, column, at, 1);
-        visit({column, row, false, widths[column], 0.0}, grid.y, row, at, columns);
+        visit({column, row, true, y.width(row), 0.0}, grid.x, column, at, 1);
+        visit({column, row, false, x.width(column), 0.0}, grid.y, row, at, columns);
       }
 }
 
@@ -144,8 +124,10 @@ void FarSurface::placeNodes(const FillGrid& grid, double length) {
   bottom = std::max(bottom - margin, minY);
   top = std::min(top + margin, maxY);
   constexpr double maxNodes = 96.0; // per axis
-  m_pitch = std::max(
-      {0.25 * length, findSmallestSpacing(grid), std::max(right - left, top - bottom) / maxNodes});
+  m_pitch = std::max(0.25 * length, std::max(right - left, top - bottom) / maxNodes);
+  const double spacing = std::min(FillAxis(grid.x).pitch(), FillAxis(grid.y).pitch());
+  if (std::isfinite(spacing)) // else there is one sample
+    m_pitch = std::max(m_pitch, spacing);
   m_x = makeAxis(left, right);
   m_y = makeAxis(bottom, top);
 }
@@ -167,7 +149,7 @@ FarSurface::Position FarSurface::locate(const Axis& axis, double at) const {
 /// everywhere, so that all depths are defined.
 std::vector<double> FarSurface::findOpenness(const FillGrid& grid) const {
   std::vector<double> openness(m_x.count * m_y.count, 1.0);
-  const std::vector<double> widths = findWidths(grid.x), heights = findWidths(grid.y);
+  const FillAxis columns(grid.x), rows(grid.y);
   for (std::size_t row = 0; row < grid.y.size(); ++row) {
     const auto [firstRow, offsetY] = locate(m_y, grid.y[row]);
     const Splines y(offsetY);
@@ -176,7 +158,7 @@ std::vector<double> FarSurface::findOpenness(const FillGrid& grid) const {
         continue;
       const auto [firstColumn, offsetX] = locate(m_x, grid.x[column]);
       const Splines x(offsetX);
-      const double area = widths[column] * heights[row] / (m_pitch * m_pitch);
+      const double area = columns.width(column) * rows.width(row) / (m_pitch * m_pitch);
       for (std::size_t j = 0; j < 3; ++j)
         for (std::size_t i = 0; i < 3; ++i)
           openness[index(firstColumn + i, firstRow + j)] -= area * x.values[i] * y.values[j];

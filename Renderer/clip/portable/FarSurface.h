@@ -2,7 +2,6 @@
 // The smooth part of the fill (SmoothFill.h), on a coarse grid.
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 namespace fenestra::core {

@@ -83,7 +83,7 @@ float FillLevel::extrapolate(std::size_t at, const std::vector<float>& own,
     const auto [side, from, distance, weight] = neighbor;
     if (known[from] != 1)
       return;
-    const auto limit = static_cast<float>(maxBoundarySlope * distance);
+    const auto limit = static_cast<float>(maxNearSlope * distance);
     const std::size_t before = from + static_cast<std::size_t>(offsets()[side]);
     float rise = 0.0f;
     if (m_free[at] == 0.0f)
@@ -161,7 +161,7 @@ FillLevel::BoundarySample FillLevel::makeBoundarySample(std::size_t at) const {
       sample.weights[neighbor.side] = weight;
       sample.fixed -= weight * m_depth[at];
     } else {
-      const auto limit = static_cast<float>(maxBoundarySlope * neighbor.distance);
+      const auto limit = static_cast<float>(maxNearSlope * neighbor.distance);
       sample.fixed += weight * std::clamp(m_depth[neighbor.at] - m_depth[at], -limit, limit);
     }
   });

@@ -4,8 +4,9 @@
 // It is the sum of two parts:
 //
 // - The far surface (FarSurface.h) is smooth and level a few lengths away from the focus. It is
-//   fitted to the depths along the boundary, and has the same shape at any image size: a preview
-//   shows the context of the final image, and the surface moves little while the camera turns.
+//   fitted to the depths along the boundary, and has nearly the same shape at any image size: a
+//   preview shows the context of the final image, and the surface moves little while the camera
+//   turns.
 //   (Smith and Wessel 1990, "Gridding with continuous curvature splines in tension", without their
 //   interpolation error: the data are the boundary itself.)
 // - The near surface v makes the boundary exact: it has there the remaining depth and slope.
@@ -13,8 +14,8 @@
 //       ∫ (Δv)² + 2 |∇v|² / d² + v² / d⁴,   d = nearFraction * length,
 //   so that it falls off as (1 + x / d) exp(-x / d) with the distance x.
 //
-// The boundary is that of the focus and its halo (in stills: clip/field/SilhouetteCells.h). The
-// slope of the near surface across it is limited to maxBoundarySlope, since the slope of a rounded
+// The boundary is that of the focus and its halo (clip/field/SilhouetteCells.h). The
+// slope of the near surface across it is limited to maxNearSlope, since the slope of a rounded
 // silhouette is unbounded. Where the boundary's depth jumps, between components or where the focus
 // occludes itself, the surface changes from one depth to the other within about a sample at the
 // boundary, and more gradually away from it.
@@ -34,7 +35,7 @@ namespace fenestra::core {
 
 /// Largest slope of the near surface across the boundary: depth per mm on the plane through the
 /// target.
-constexpr double maxBoundarySlope = 1.0;
+constexpr double maxNearSlope = 1.0;
 
 /// Reach of the near surface, as a fraction of the length.
 constexpr double nearFraction = 0.25;
@@ -54,7 +55,6 @@ struct FillGrid {
 
 /// Fills the samples that are not known. At least one must be. `far`: of the same grid, with
 /// `length`; its halo may have other depths. `length`: mm, over which the surface levels off.
-void fillSmoothly(FillGrid& grid, const FarSurface& far, double length,
-                  const ParallelLoop& loop = runSerially);
+void fillSmoothly(FillGrid& grid, const FarSurface& far, double length, const ParallelLoop& loop);
 
 } // namespace fenestra::core
