@@ -95,7 +95,7 @@ struct FarSurface::Equations {
 
 FarSurface::FarSurface(const FillGrid& grid, double length) {
   placeNodes(grid, length);
-  Equations equations(m_x.count * m_y.count, 2 * m_x.count + 2);
+  Equations equations(m_x.count * m_y.count, 2 * std::min(m_x.count, m_y.count) + 2);
   addEnergy(equations, findOpenness(grid), length);
   if (addBoundary(equations, grid, length))
     m_weights = equations.matrix.solve(std::move(equations.right));
@@ -108,14 +108,15 @@ FarSurface::FarSurface(const FillGrid& grid, double length) {
 void FarSurface::placeNodes(const FillGrid& grid, double length) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   double left = infinite, right = -infinite, bottom = infinite, top = -infinite;
-  for (std::size_t sample = 0; sample < grid.isKnown.size(); ++sample)
-    if (grid.isKnown[sample] != 0) {
-      const double x = grid.x[sample % grid.x.size()], y = grid.y[sample / grid.x.size()];
-      left = std::min(left, x);
-      right = std::max(right, x);
-      bottom = std::min(bottom, y);
-      top = std::max(top, y);
-    }
+  const std::uint8_t* isKnown = grid.isKnown.data();
+  for (const double y : grid.y)
+    for (const double x : grid.x)
+      if (*isKnown++ != 0) {
+        left = std::min(left, x);
+        right = std::max(right, x);
+        bottom = std::min(bottom, y);
+        top = std::max(top, y);
+      }
   const double margin = 4.0 * length;
   const auto [minX, maxX] = std::minmax(grid.x.front(), grid.x.back());
   const auto [minY, maxY] = std::minmax(grid.y.front(), grid.y.back());
@@ -140,9 +141,10 @@ FarSurface::Axis FarSurface::makeAxis(double low, double high) const {
 
 /// Positions beyond the nodes are moved to them.
 FarSurface::Position FarSurface::locate(const Axis& axis, double at) const {
-  const double position = (at - axis.first) / m_pitch;
-  const double node = std::clamp(std::round(position), 1.0, static_cast<double>(axis.count - 2));
-  return {static_cast<std::size_t>(node) - 1, std::clamp(position - node, -0.5, 0.5)};
+  const double last = static_cast<double>(axis.count) - 1.5;
+  const double position = std::clamp((at - axis.first) / m_pitch, 0.5, last);
+  const std::size_t first = std::min(static_cast<std::size_t>(position - 0.5), axis.count - 3);
+  return {first, position - 1.0 - static_cast<double>(first)};
 }
 
 /// Per node, the fraction of its area that is not known, for the plate lies only there; a little
@@ -150,18 +152,22 @@ FarSurface::Position FarSurface::locate(const Axis& axis, double at) const {
 std::vector<double> FarSurface::findOpenness(const FillGrid& grid) const {
   std::vector<double> openness(m_x.count * m_y.count, 1.0);
   const FillAxis columns(grid.x), rows(grid.y);
+  std::vector<double> known(m_x.count); // integrals of the splines over the known part of a row
   for (std::size_t row = 0; row < grid.y.size(); ++row) {
-    const auto [firstRow, offsetY] = locate(m_y, grid.y[row]);
-    const Splines y(offsetY);
-    for (std::size_t column = 0; column < grid.x.size(); ++column) {
-      if (grid.isKnown[row * grid.x.size() + column] == 0)
-        continue;
-      const auto [firstColumn, offsetX] = locate(m_x, grid.x[column]);
-      const Splines x(offsetX);
-      const double area = columns.width(column) * rows.width(row) / (m_pitch * m_pitch);
-      for (std::size_t j = 0; j < 3; ++j)
+    std::fill(known.begin(), known.end(), 0.0);
+    for (std::size_t column = 0; column < grid.x.size(); ++column)
+      if (grid.isKnown[row * grid.x.size() + column] != 0) {
+        const auto [first, offset] = locate(m_x, grid.x[column]);
+        const Splines x(offset);
         for (std::size_t i = 0; i < 3; ++i)
-          openness[index(firstColumn + i, firstRow + j)] -= area * x.values[i] * y.values[j];
+          known[first + i] += columns.width(column) * x.values[i];
+      }
+    const auto [first, offset] = locate(m_y, grid.y[row]);
+    const Splines y(offset);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double weight = rows.width(row) * y.values[j] / (m_pitch * m_pitch);
+      for (std::size_t column = 0; column < m_x.count; ++column)
+        openness[index(column, first + j)] -= weight * known[column];
     }
   }
   constexpr double least = 1e-3;
@@ -188,13 +194,13 @@ void FarSurface::addEnergy(Equations& equations, const std::vector<double>& open
                               tension * std::min(openness[at], openness[neighbor]), 0.0);
       };
       if (row > 0)
-        addNeighbor(at - m_x.count);
+        addNeighbor(index(column, row - 1));
       if (column > 0)
-        addNeighbor(at - 1);
+        addNeighbor(index(column - 1, row));
       if (column + 1 < m_x.count)
-        addNeighbor(at + 1);
+        addNeighbor(index(column + 1, row));
       if (row + 1 < m_y.count)
-        addNeighbor(at + m_x.count);
+        addNeighbor(index(column, row + 1));
       terms.push_back({at, -static_cast<double>(terms.size())});
       equations.addSquare(terms, bending * openness[at], 0.0);
     }
@@ -225,15 +231,21 @@ bool FarSurface::addBoundary(Equations& equations, const FillGrid& grid, double 
   return hasBoundary;
 }
 
-double FarSurface::operator()(double x, double y) const {
-  const auto [firstColumn, offsetX] = locate(m_x, x);
+void FarSurface::findRow(const std::vector<double>& x, double y, std::vector<float>& depths) const {
   const auto [firstRow, offsetY] = locate(m_y, y);
-  const Splines across(offsetX), down(offsetY);
-  double depth = 0.0;
+  const Splines down(offsetY);
+  std::vector<double> weights(m_x.count, 0.0); // of the splines along x
   for (std::size_t j = 0; j < 3; ++j)
-    for (std::size_t i = 0; i < 3; ++i)
-      depth += down.values[j] * across.values[i] * m_weights[index(firstColumn + i, firstRow + j)];
-  return depth;
+    for (std::size_t column = 0; column < m_x.count; ++column)
+      weights[column] += down.values[j] * m_weights[index(column, firstRow + j)];
+  depths.clear();
+  for (const double at : x) {
+    const auto [first, offset] = locate(m_x, at);
+    const Splines across(offset);
+    depths.push_back(static_cast<float>(across.values[0] * weights[first] +
+                                        across.values[1] * weights[first + 1] +
+                                        across.values[2] * weights[first + 2]));
+  }
 }
 
 } // namespace fenestra::core

@@ -24,8 +24,8 @@ class FarSurface {
 public:
   FarSurface(const FillGrid& grid, double length);
 
-  /// Depth at a position on the plane through the target, mm. Its slope is continuous.
-  double operator()(double x, double y) const;
+  /// Depths at positions of a row on the plane through the target, mm. Their slope is continuous.
+  void findRow(const std::vector<double>& x, double y, std::vector<float>& depths) const;
 
 private:
   struct Axis {
@@ -42,7 +42,10 @@ private:
 
   Axis makeAxis(double low, double high) const;
   Position locate(const Axis& axis, double at) const;
-  std::size_t index(std::size_t column, std::size_t row) const { return row * m_x.count + column; }
+  /// Nodes are numbered along the shorter axis, so that unknowns depend on near ones.
+  std::size_t index(std::size_t column, std::size_t row) const {
+    return m_x.count < m_y.count ? row * m_x.count + column : column * m_y.count + row;
+  }
   void placeNodes(const FillGrid& grid, double length);
   std::vector<double> findOpenness(const FillGrid& grid) const;
   void addEnergy(Equations& equations, const std::vector<double>& openness, double length) const;
@@ -50,7 +53,7 @@ private:
 
   double m_pitch = 0.0; ///< of the nodes, mm
   Axis m_x, m_y;
-  std::vector<double> m_weights; ///< of the splines, mm, row by row
+  std::vector<double> m_weights; ///< of the splines, mm
 };
 
 } // namespace fenestra::core

@@ -12,10 +12,12 @@ void forEachSample(const FillGrid& grid, const FarSurface& far, const ParallelLo
                    const Function& function) {
   const std::size_t columns = grid.x.size();
   loop(grid.y.size(), 1 + 4096 / columns, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row)
+    std::vector<float> depths;
+    for (std::size_t row = begin; row < end; ++row) {
+      far.findRow(grid.x, grid.y[row], depths);
       for (std::size_t column = 0; column < columns; ++column)
-        function(row * columns + column, column, row,
-                 static_cast<float>(far(grid.x[column], grid.y[row])));
+        function(row * columns + column, column, row, depths[column]);
+    }
   });
 }
 
