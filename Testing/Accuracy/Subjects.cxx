@@ -101,21 +101,25 @@ View makeView(const FocusField& field, int number, int count, int size, double e
   return view;
 }
 
-Surface makeSurface(const Subject& subject, const View& view, const std::string& boundary) {
+RenderRequest makeRequest(const Subject& subject, const View& view, Boundary boundary) {
   RenderRequest request = makeRequest(subject);
   request.clip.mode = ClipMode::surface;
-  request.clip.surface.boundary = boundary == "exact" ? Boundary::exact : Boundary::spline;
+  request.clip.surface.boundary = boundary;
   request.view.position = view.position;
   request.view.target = view.target;
   request.view.up = view.up;
   request.view.projection = view.isPerspective ? Projection::perspective : Projection::orthographic;
   if (view.isPerspective)
-    request.view.angle =
-        360.0 / pi * std::atan(view.halfHeight / (view.target - view.position).norm());
+    request.view.angle = view.angle();
   else
     request.view.scale = view.halfHeight;
   request.width = request.height = view.size;
-  const auto scene = std::make_shared<const PreparedScene>(request);
+  return request;
+}
+
+Surface makeSurface(const Subject& subject, const View& view, const std::string& boundary) {
+  const auto scene = std::make_shared<const PreparedScene>(
+      makeRequest(subject, view, boundary == "exact" ? Boundary::exact : Boundary::spline));
   return [scene](const Vec2& raster) {
     return std::get<ClipDepth>(scene->clip())
         .surfaceDepth(scene->camera().toPlane(raster.x(), raster.y()));

@@ -2,6 +2,7 @@
 // Subjects of the boundary check, and their clipping surfaces.
 
 #include "BoundaryMeasure.h"
+#include "scene/RenderRequest.h"
 
 #include <filesystem>
 #include <string>
@@ -20,6 +21,9 @@ struct Subject {
 
 /// Writes the knee of `fenestra phantom` to a folder; `size` in voxels as in --size, or "".
 Subject makeKnee(const std::filesystem::path& folder, const std::string& size);
+
+/// Request of a surface without softness, with the paper's spline or the exact boundary.
+RenderRequest makeRequest(const Subject& subject, const View& view, Boundary boundary);
 
 /// Indicator of the subject's focus. Smoothed labels come from the renderer, since the check does
 /// not test the smoothing.

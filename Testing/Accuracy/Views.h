@@ -4,6 +4,7 @@
 
 #include "base/Vector.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct View {
   bool isPerspective = false;
   double halfHeight = 1.0; ///< half of the visible height on the plane through the target, mm
   int size = 1;            ///< pixels per side
+
+  /// Vertical angle of perspective, degrees.
+  double angle() const { return 360.0 / pi * std::atan(halfHeight / (target - position).norm()); }
 
   struct CameraRay {
     Vec3 origin, direction; ///< a unit vector

@@ -1,5 +1,5 @@
 #pragma once
-// Clipping surface as a triangle mesh, for other views and other programs.
+// Surfaces as triangle meshes, for other views and other programs; the clipping surface as one.
 
 #include "clip/field/Clip.h"
 #include "model/volume/Domain.h"
@@ -12,8 +12,9 @@ namespace fenestra::core {
 
 struct SurfaceMesh {
   std::vector<Vec3> points;  ///< world mm
-  std::vector<float> depths; ///< of each point, mm
-  /// Indices of points, counterclockwise as seen from the camera: normals point toward the camera.
+  std::vector<float> depths; ///< of each point, mm; empty: none
+  /// Indices of points, counterclockwise as seen from the camera, or from outside a closed surface:
+  /// normals point there.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 

@@ -40,6 +40,10 @@ std::string encodeVtp(const SurfaceMesh& surface) {
   std::vector<std::int32_t> ends;
   for (std::size_t i = 1; i <= surface.triangles.size(); ++i)
     ends.push_back(static_cast<std::int32_t>(3 * i));
+  const std::string depths = surface.depths.empty()
+                                 ? "<PointData>\n"
+                                 : "<PointData Scalars=\"depth\">\n" +
+                                       encodeDataArray("depth", "Float32", 1, surface.depths);
   return concat("<?xml version=\"1.0\"?>\n",
                 "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" ",
                 "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n",
@@ -47,8 +51,7 @@ std::string encodeVtp(const SurfaceMesh& surface) {
                 "82 65 83 0</Array>\n</FieldData>\n", "<Piece NumberOfPoints=\"",
                 surface.points.size(), "\" NumberOfVerts=\"0\" ",
                 "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"",
-                surface.triangles.size(), "\">\n<PointData Scalars=\"depth\">\n",
-                encodeDataArray("depth", "Float32", 1, surface.depths), "</PointData>\n<Points>\n",
+                surface.triangles.size(), "\">\n", depths, "</PointData>\n<Points>\n",
                 encodeDataArray("Points", "Float64", 3, surface.points), "</Points>\n<Polys>\n",
                 encodeDataArray("connectivity", "Int32", 1, surface.triangles),
                 encodeDataArray("offsets", "Int32", 1, ends),
@@ -58,12 +61,13 @@ std::string encodeVtp(const SurfaceMesh& surface) {
 std::string encodePly(const SurfaceMesh& surface) {
   std::string bytes =
       concat("ply\nformat binary_little_endian 1.0\ncomment SPACE=RAS\n", "element vertex ",
-             surface.points.size(), "\nproperty float x\nproperty float y\n",
-             "property float z\nproperty float depth\nelement face ", surface.triangles.size(),
-             "\nproperty list uchar int vertex_indices\nend_header\n");
+             surface.points.size(), "\nproperty float x\nproperty float y\n", "property float z\n",
+             surface.depths.empty() ? "" : "property float depth\n", "element face ",
+             surface.triangles.size(), "\nproperty list uchar int vertex_indices\nend_header\n");
   for (std::size_t i = 0; i < surface.points.size(); ++i) {
     appendFloats(bytes, surface.points[i]);
-    append(bytes, surface.depths[i]);
+    if (!surface.depths.empty())
+      append(bytes, surface.depths[i]);
   }
   for (const auto& triangle : surface.triangles) {
     append(bytes, std::uint8_t{3});
@@ -73,7 +77,7 @@ std::string encodePly(const SurfaceMesh& surface) {
 }
 
 std::string encodeStl(const SurfaceMesh& surface) {
-  std::string bytes = "Fenestra clipping surface SPACE=RAS";
+  std::string bytes = "Fenestra surface SPACE=RAS";
   bytes.resize(80, ' '); // STL header
   append(bytes, static_cast<std::uint32_t>(surface.triangles.size()));
   for (const auto& [a, b, c] : surface.triangles) {

@@ -10,8 +10,8 @@ namespace fenestra::core {
 
 /// Writes a surface, declared by declareSurface, in the format given by the extension. Coordinates
 /// are RAS mm, stated as in Slicer's files (SPACE=RAS):
-/// - `.vtp`: VTK XML, points as doubles, depths as point data "depth".
-/// - `.ply`: binary, little endian, floats, depths as a property "depth" of the vertices.
+/// - `.vtp`: VTK XML, points as doubles, depths (if any) as point data "depth".
+/// - `.ply`: binary, little endian, floats, depths (if any) as a property "depth" of the vertices.
 /// - `.stl`: binary, floats, no depths.
 /// Equal surfaces give equal bytes. Throws Error: (request) for other extensions, (output) if the
 /// file cannot be written.
