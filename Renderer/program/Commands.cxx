@@ -23,6 +23,7 @@ constexpr Command subcommands[] = {
     {compareSyntax, compareCommand},
     {turntableSyntax, turntableCommand},
     {serveSyntax, serveCommand},
+    {meshSyntax, meshCommand},
     {mergeSyntax, mergeCommand},
     {batchSyntax, batchCommand},
     {describeSyntax, describeCommand},

@@ -82,6 +82,25 @@ void PreparedScene::readInput() {
                                      : Handle<std::vector<bool>>());
 }
 
+void PreparedScene::prepareFocus() {
+  const RenderRequest& r = m_request;
+  const VolumeHandle raw = rawVolume();
+  if (r.focusStyle.hasOrganMargin && !r.focus.empty() &&
+      isPlausibleModality(Modality::ct, raw->volume))
+    m_trimmed.get(allSegments(), m_hasVoxels.get(allSegments()), r.focus, raw);
+  if (!r.focus.empty())
+    m_hasVoxels.get(allSegments());
+  m_focus.get(currentSegments(), m_hasVoxels.result(), r.focus, r.focusStyle.shaping,
+              raw->volume.grid);
+}
+
+PreparedScene::Focus PreparedScene::readFocus(const RenderRequest& request, const Input& input) {
+  PreparedScene scene(request, input, Unprepared());
+  scene.readInput();
+  scene.prepareFocus();
+  return {scene.m_focus.result(), scene.rawVolume()->volume.grid};
+}
+
 void PreparedScene::prepare(const StopFlag& stop) {
   const RenderRequest& r = m_request;
   std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
@@ -90,13 +109,8 @@ void PreparedScene::prepare(const StopFlag& stop) {
   const auto lights = m_namedLights.get(r.lightsName(), r.environment, r.environmentMap);
   const auto settings = m_settings.result();
   const VolumeHandle raw = rawVolume();
-  if (r.focusStyle.hasOrganMargin && !r.focus.empty() &&
-      isPlausibleModality(Modality::ct, raw->volume))
-    m_trimmed.get(allSegments(), m_hasVoxels.get(allSegments()), r.focus, raw);
-  if (!r.focus.empty())
-    m_hasVoxels.get(allSegments());
-  const auto focus = m_focus.get(currentSegments(), m_hasVoxels.result(), r.focus,
-                                 r.focusStyle.shaping, raw->volume.grid);
+  prepareFocus();
+  const auto focus = m_focus.result();
   if (!r.transfer)
     m_sceneTransfer.get(m_input, r.volume.name, {raw->volume.minimum, raw->volume.maximum});
   if (allSegments() &&

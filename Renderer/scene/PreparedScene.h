@@ -36,6 +36,14 @@ public:
   PreparedScene(const RenderRequest& request, const Input& input,
                 const StopFlag& stop = neverStopped);
 
+  struct Focus {
+    FocusHandle input;
+    Grid volume;
+  };
+  /// The focus of the request's scene, and the grid of its volume, without the other stages.
+  /// Throws Error.
+  static Focus readFocus(const RenderRequest& request, const Input& input);
+
   /// Returns the scene of another request. Recomputes only the stages that depend on a difference
   /// from this scene's request. Files are assumed not to change. Throws Error.
   PreparedScene withRequest(const RenderRequest& request,
@@ -92,11 +100,17 @@ public:
   const std::optional<Background>& background() const { return m_settings->background; }
 
 private:
+  struct Unprepared {};
+  PreparedScene(const RenderRequest& request, const Input& input, Unprepared /*stages*/)
+      : m_request(request), m_input(input) {}
+
   /// Computes all stages that m_request needs, in order.
   void prepare(const StopFlag& stop);
   /// The first of them: volume, settings and segments of the input, and lights. Adds found lungs to
   /// the request as its focus.
   void readInput();
+  /// The stages after the input that the focus needs.
+  void prepareFocus();
   /// Name of the materials to use; `segments`: null without labels.
   std::string resolveMaterials(const Handle<SegmentsInput>& segments) const;
   void makeTint(const std::string& name);
