@@ -14,8 +14,12 @@ set(MODULE_NAME Fenestra)
 set(COMMAND_MODULE_NAME FenestraCommand)
 set(MODULE_TITLE "Fenestra")
 string(TOUPPER ${MODULE_NAME} MODULE_NAME_UPPER)
+# The renderer's folder for live display, standard C++17; nothing else of the renderer is included.
+set(FENESTRA_PORTABLE_INCLUDE_DIR "${CMAKE_CURRENT_SOURCE_DIR}/../Renderer")
+add_subdirectory(View)
 add_subdirectory(MRML)
 add_subdirectory(Logic)
+add_subdirectory(MRMLDM)
 
 include(Widgets/Widgets.cmake)
 slicerMacroBuildLoadableModule(
@@ -24,22 +28,29 @@ slicerMacroBuildLoadableModule(
   EXPORT_DIRECTIVE "Q_SLICER_QTMODULES_${MODULE_NAME_UPPER}_EXPORT"
   INCLUDE_DIRECTORIES ${CMAKE_CURRENT_SOURCE_DIR}/Logic ${CMAKE_CURRENT_BINARY_DIR}/Logic
                       ${CMAKE_CURRENT_SOURCE_DIR}/MRML ${CMAKE_CURRENT_BINARY_DIR}/MRML
-                      ${CMAKE_CURRENT_SOURCE_DIR}/Widgets
+                      ${CMAKE_CURRENT_SOURCE_DIR}/Widgets ${FENESTRA_PORTABLE_INCLUDE_DIR}
+                      ${qSlicerSubjectHierarchyModuleWidgets_INCLUDE_DIRS}
+                      ${vtkSlicerFenestraModuleMRMLDisplayableManager_INCLUDE_DIRS}
   SRCS qSlicerFenestraModule.cxx qSlicerFenestraModule.h
        qSlicerFenestraModuleWidget.cxx qSlicerFenestraModuleWidget.h
        qSlicerFenestraResults.cxx qSlicerFenestraResults.h
-       qSlicerFenestraSession.cxx qSlicerFenestraSession.h qSlicerFenestraSessionPreview.cxx
+       qSlicerFenestraSession.cxx qSlicerFenestraSession.h qSlicerFenestraSessionOpening.cxx
+       qSlicerFenestraSessionPreview.cxx
+       qSlicerSubjectHierarchyFenestraPlugin.cxx qSlicerSubjectHierarchyFenestraPlugin.h
        ${widget_sources}
-  MOC_SRCS qSlicerFenestraModule.h qSlicerFenestraModuleWidget.h qSlicerFenestraSession.h
+  MOC_SRCS qSlicerSubjectHierarchyFenestraPlugin.h qSlicerFenestraModule.h qSlicerFenestraModuleWidget.h qSlicerFenestraSession.h
            ${widget_moc_sources}
   UI_SRCS Resources/UI/qSlicerFenestraModuleWidget.ui ${widget_ui_sources}
-  TARGET_LIBRARIES vtkSlicer${MODULE_NAME}ModuleLogic FenestraProcess FenestraScene
+  TARGET_LIBRARIES vtkSlicer${MODULE_NAME}ModuleLogic
+                   vtkSlicer${MODULE_NAME}ModuleMRMLDisplayableManager
+                   qSlicerSubjectHierarchyModuleWidgets FenestraPortable
+                   FenestraProcess FenestraScene
   RESOURCES Resources/qSlicerFenestraModule.qrc
   WITH_GENERIC_TESTS)
 
 # Libraries that the module links are exported with the module.
 set_property(GLOBAL APPEND PROPERTY Slicer_TARGETS
-  FenestraProcess FenestraScene fenestra_sanitizers fenestra_warnings)
+  FenestraPortable FenestraProcess FenestraScene FenestraView fenestra_sanitizers fenestra_warnings)
 
 include(Package.cmake)
 if(BUILD_TESTING)

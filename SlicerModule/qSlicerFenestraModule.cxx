@@ -2,12 +2,20 @@
 
 #include "qSlicerFenestraModuleWidget.h"
 #include "qSlicerFenestraSession.h"
+#include "qSlicerSubjectHierarchyFenestraPlugin.h"
 #include "vtkSlicerFenestraLogic.h"
 
+#include <qSlicerSubjectHierarchyPluginHandler.h>
+
 #include <vtkMRMLScene.h>
+#include <vtkMRMLThreeDViewDisplayableManagerFactory.h>
+
+#include <vtkAutoInit.h>
 
 #include <QDir>
 #include <QFileInfo>
+
+VTK_MODULE_INIT(vtkSlicerFenestraModuleMRMLDisplayableManager) // its object factory
 
 qSlicerFenestraModule::qSlicerFenestraModule(QObject* parent) : Superclass(parent) {}
 
@@ -22,6 +30,10 @@ vtkSlicerFenestraLogic* qSlicerFenestraModule::fenestraLogic() {
 void qSlicerFenestraModule::setup() {
   Superclass::setup();
   m_session = new qSlicerFenestraSession(fenestraLogic(), program(), this);
+  qSlicerSubjectHierarchyPluginHandler::instance()->registerPlugin(
+      new qSlicerSubjectHierarchyFenestraPlugin(fenestraLogic()));
+  vtkMRMLThreeDViewDisplayableManagerFactory::GetInstance()->RegisterDisplayableManager(
+      "vtkMRMLFenestraOpeningDisplayableManager");
 }
 
 void qSlicerFenestraModule::setMRMLScene(vtkMRMLScene* scene) {
@@ -62,11 +74,11 @@ QStringList qSlicerFenestraModule::categories() const {
 }
 
 QStringList qSlicerFenestraModule::dependencies() const {
-  return {"Cameras", "Markups", "Segmentations", "VolumeRendering", "Volumes"};
+  return {"Cameras", "Markups", "Segmentations", "SubjectHierarchy", "VolumeRendering", "Volumes"};
 }
 
 QStringList qSlicerFenestraModule::associatedNodeTypes() const {
-  return {"vtkMRMLFenestraRenderNode"};
+  return {"vtkMRMLFenestraOpeningNode", "vtkMRMLFenestraRenderNode"};
 }
 
 /// Path relative to this library, where Slicer also finds the renderer as a command line module.

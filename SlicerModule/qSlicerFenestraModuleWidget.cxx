@@ -87,6 +87,7 @@ void qSlicerFenestraModuleWidget::setup() {
   qSlicerFenestraWidgets::nameParts(this);
   Superclass::setup();
   d->Settings->setLogic(fenestraLogic());
+  d->Opening->setLogic(fenestraLogic());
   d->session = dynamic_cast<qSlicerFenestraModule*>(this->module())->session();
   connectPanel();
   connectSession();
@@ -350,6 +351,7 @@ void qSlicerFenestraModuleWidget::updateButtons() {
   const bool hasVolume = d->hasVolume();
   setEnabled(d->RenderButton, hasVolume, tr("Choose a volume first"));
   d->Settings->setHasVolume(hasVolume);
+  d->Opening->use(d->Settings->node());
   if (!hasVolume) {
     d->PreviewLabel->setText(tr("Load a volume, or the sample knee"));
     d->PreviewStateLabel->clear();

@@ -24,16 +24,6 @@ qFenestraOutcome toFailure(const QString& message, const QString& details = {}) 
   return {Ended::failed, message, details};
 }
 
-/// The renderer's message without file names in this session's folder.
-QString toUserText(QString message, const QString& folder) {
-  const int colon = message.indexOf(": ");
-  if (colon > 0 && message.startsWith(folder))
-    message.remove(0, colon + 2);
-  if (!message.isEmpty())
-    message[0] = message[0].toUpper();
-  return message;
-}
-
 } // namespace
 
 qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
@@ -53,6 +43,10 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
               SLOT(onRenderWait(vtkObject*, vtkObject*)));
   qvtkConnect(m_logic, vtkSlicerFenestraLogic::StopRequestedEvent, this, SLOT(stop()));
   qvtkConnect(m_logic, vtkSlicerFenestraLogic::ViewChangedEvent, this, SLOT(onViewChanged()));
+  qvtkConnect(m_logic, vtkSlicerFenestraLogic::OpeningChangedEvent, this, SLOT(onOpeningChanged()));
+  m_openingTimer.setSingleShot(true);
+  m_openingTimer.setInterval(interval);
+  connect(&m_openingTimer, &QTimer::timeout, this, &qSlicerFenestraSession::updateOpening);
   constexpr int sampleInterval = 500; // ms
   m_sampleTimer.setInterval(sampleInterval);
   connect(&m_sampleTimer, &QTimer::timeout, this,
@@ -135,6 +129,15 @@ void qSlicerFenestraSession::write(
     }
     runInMainThread([scene, message, then] { then(scene, message); });
   });
+}
+
+QString qSlicerFenestraSession::toUserText(QString message, const QString& folder) {
+  const int colon = message.indexOf(": ");
+  if (colon > 0 && message.startsWith(folder))
+    message.remove(0, colon + 2);
+  if (!message.isEmpty())
+    message[0] = message[0].toUpper();
+  return message;
 }
 
 // ---- renders
@@ -250,6 +253,7 @@ void qSlicerFenestraSession::closeScene() {
   m_files = std::make_shared<Files>(); // the old files are removed with their last process
   m_previewKey.clear();
   m_previewFolder.clear();
+  m_focusKey.clear();
 }
 
 void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcome) {

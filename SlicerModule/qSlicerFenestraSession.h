@@ -2,6 +2,7 @@
 #define __qSlicerFenestraSession_h
 
 #include "FenestraSceneFiles.h"
+#include "clip/portable/LiveSurface.h"
 #include "qFenestraFolder.h"
 #include "qFenestraMaterials.h"
 #include "qFenestraPreview.h"
@@ -21,12 +22,13 @@
 #include <functional>
 #include <memory>
 
+#include "vtkMRMLFenestraOpeningNode.h"
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraLogic.h"
 #include <vtkWeakPointer.h>
 
-/// \brief Rendering for the panel and for scripts: one preview that follows the settings, and a
-/// queue of renders. Failures are also logged.
+/// \brief Rendering for the panel and for scripts: one preview that follows the settings, a queue
+/// of renders, and the focus of the opened view. Failures are also logged.
 ///
 /// A worker thread writes and reads the files, in a private folder that is removed with the scene.
 /// Only the main thread changes the scene. During a render there is no preview, which would slow
@@ -95,6 +97,8 @@ private slots:
   void onRenderRequested(vtkObject* logic, vtkObject* render);
   void onRenderWait(vtkObject* logic, vtkObject* render);
   void onViewChanged();
+  void onOpeningChanged();
+  void refreshOpening();
 
 private:
   static constexpr const char* folderPrefix = "fenestra-slicer-";
@@ -111,6 +115,8 @@ private:
   };
 
   static void removeFolder(const QString& folder); ///< empty: none
+  /// The renderer's message without file names in this session's folder.
+  static QString toUserText(QString message, const QString& folder);
   void runInWorker(const std::function<void()>& job);
   void runInMainThread(const std::function<void()>& job);
   void write(const SlicerExport::Contents& contents,
@@ -130,6 +136,13 @@ private:
   QString writePropertyFile(const SlicerExport::Contents& contents) const;
   void sendToPreview(const QJsonObject& flags);
   void showPreview(const qFenestraPreviewImage& picture);
+
+  void updateOpening();
+  void showOpeningProblem();
+  void observeOpening(vtkMRMLFenestraRenderNode* settings);
+  void startFocus(const SlicerExport::Contents& contents, const Flags& flags);
+  void endFocus(const std::shared_ptr<const fenestra::core::ClosedSurface>& focus,
+                const fenestra::core::BoxCorners& corners, const QString& problem);
 
   vtkSlicerFenestraLogic* m_logic;
   QString m_program;
@@ -156,6 +169,13 @@ private:
   QString m_previewFolder;
   QJsonObject m_sentFlags;
   bool m_starting = false;
+
+  vtkWeakPointer<vtkMRMLFenestraOpeningNode> m_opening;
+  std::array<vtkWeakPointer<vtkMRMLNode>, 3> m_openedNodes; ///< settings, volume, segmentation
+  QTimer m_openingTimer;      ///< merges changes; not restarted by further ones
+  std::string m_focusKey;     ///< of the triangles that the opened view has, or will have
+  std::string m_focusProblem; ///< why the last focus could not be read; empty: it was
+  bool m_isReadingFocus = false;
 };
 
 #endif

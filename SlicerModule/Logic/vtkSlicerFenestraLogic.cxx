@@ -1,6 +1,7 @@
 #include "vtkSlicerFenestraLogic.h"
 
 #include "FenestraFlags.h"
+#include "vtkMRMLFenestraOpeningNode.h"
 #include "vtkMRMLFenestraPictureDisplayNode.h"
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraSnapshot.h"
@@ -13,6 +14,9 @@
 #include <vtkMRMLSegmentationNode.h>
 #include <vtkMRMLViewNode.h>
 
+#include <vtkSegmentation.h>
+
+#include <vtkCommand.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
@@ -50,12 +54,14 @@ void vtkSlicerFenestraLogic::RegisterNodes() {
   if (!scene)
     return;
   scene->RegisterNodeClass(vtkSmartPointer<Node>::New());
+  scene->RegisterNodeClass(vtkSmartPointer<vtkMRMLFenestraOpeningNode>::New());
   scene->RegisterNodeClass(vtkSmartPointer<vtkMRMLFenestraPictureDisplayNode>::New());
 }
 
 void vtkSlicerFenestraLogic::SetMRMLSceneInternal(vtkMRMLScene* scene) {
   vtkNew<vtkIntArray> events;
   events->InsertNextValue(vtkMRMLScene::StartImportEvent);
+  events->InsertNextValue(vtkMRMLScene::NodeAddedEvent);
   events->InsertNextValue(vtkMRMLScene::NodeRemovedEvent);
   this->SetAndObserveMRMLSceneEventsInternal(scene, events);
 }
@@ -169,6 +175,19 @@ SlicerExport::Contents vtkSlicerFenestraLogic::Snapshot(Node* render,
   return contents;
 }
 
+const std::vector<unsigned long>& vtkSlicerFenestraLogic::GetDataEvents() {
+  static const std::vector<unsigned long> events = {
+      vtkCommand::ModifiedEvent,
+      vtkMRMLVolumeNode::ImageDataModifiedEvent,
+      vtkMRMLTransformableNode::TransformModifiedEvent,
+      vtkMRMLDisplayableNode::DisplayModifiedEvent,
+      vtkSegmentation::RepresentationModified,
+      vtkSegmentation::SegmentAdded,
+      vtkSegmentation::SegmentRemoved,
+      vtkSegmentation::SegmentModified};
+  return events;
+}
+
 std::vector<SlicerExport::Segment> vtkSlicerFenestraLogic::GetSegments(Node* render) {
   auto* segmentation =
       render
@@ -234,12 +253,16 @@ std::string vtkSlicerFenestraLogic::GetPlaneFlag(vtkMRMLNode* node) {
   return formatTriple(origin) + "," + formatTriple(normal);
 }
 
+bool vtkSlicerFenestraLogic::HasFocus(Node* render) {
+  return render && (!render->GetFlag("focus").empty() || !render->GetFlag("preset").empty());
+}
+
 bool vtkSlicerFenestraLogic::HasSurface(Node* render) {
   if (!render)
     return false;
   const std::string mode = render->GetFlag("clip");
   if (mode.empty() || mode == "auto") // a focus is clipped by a surface
-    return !render->GetFlag("focus").empty() || !render->GetFlag("preset").empty();
+    return HasFocus(render);
   return mode != "none" && mode != "plane";
 }
 

@@ -14,6 +14,7 @@
 
 class vtkImageData;
 class vtkMRMLCameraNode;
+class vtkMRMLFenestraOpeningNode;
 class vtkMRMLFenestraRenderNode;
 class vtkMRMLNode;
 class vtkMRMLScalarVolumeNode;
@@ -52,10 +53,17 @@ public:
   vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings, bool turntable = false);
 
   /// Requests to the renderer, which observes them: the module's session. The call data of the
-  /// first two is the render's node. RenderRequestedEvent: set the node's state, render, and call
+  /// first two is the render's node. OpeningChangedEvent: GetOpening
+  /// returns another node. RenderRequestedEvent: set the node's state, render, and call
   /// its EndRender. RenderWaitEvent: return when the render has ended. ViewChangedEvent: call
   /// AlignView later.
-  enum { RenderRequestedEvent = 62180, RenderWaitEvent, StopRequestedEvent, ViewChangedEvent };
+  enum {
+    RenderRequestedEvent = 62180,
+    RenderWaitEvent,
+    StopRequestedEvent,
+    ViewChangedEvent,
+    OpeningChangedEvent
+  };
   /// Renders the settings in the background and returns the render's node, which reports progress
   /// and end as events (RenderProgressEvent, RenderEndEvent). Null: failed, the log says why.
   /// `wait`: returns after the end; then null also means that there is no image.
@@ -66,6 +74,25 @@ public:
   void StopRender();
   static bool IsRendering(vtkMRMLFenestraRenderNode* render);
 
+  /// Opens the 3D views: cuts the volume rendering by the clipping surface of the settings' focus,
+  /// from now on and for every camera. Shows the volume rendering, created if missing. Null: there
+  /// is no volume or no focus, the log says so.
+  vtkMRMLFenestraOpeningNode* OpenView(vtkMRMLFenestraRenderNode* settings);
+  /// The same after setting the focus to one segment. If the settings have no volume, takes the one
+  /// on which the segmentation was made.
+  vtkMRMLFenestraOpeningNode* OpenSegment(vtkMRMLSegmentationNode* segmentation,
+                                          const std::string& segmentId);
+  /// The same with another volume.
+  vtkMRMLFenestraOpeningNode* OpenVolume(vtkMRMLScalarVolumeNode* volume);
+  void CloseView();
+  /// The scene's opened view, the first if there are several, visible or not; null: none.
+  vtkMRMLFenestraOpeningNode* GetOpening();
+  /// Why the 3D views cannot be opened with the settings' clip mode, or with the volume rendering's
+  /// method, as a sentence; empty: they can.
+  static std::string FindOpeningProblem(vtkMRMLFenestraRenderNode* settings);
+  /// True if the settings have a volume and a focus.
+  static bool CanOpenView(vtkMRMLFenestraRenderNode* settings);
+
   /// Writes the scene as the renderer would receive it into a folder, created if missing, and
   /// returns its path; empty: failed, the log says why.
   std::string WriteScene(vtkMRMLFenestraRenderNode* render, const std::string& folder);
@@ -73,6 +100,8 @@ public:
   void UseCamera(vtkMRMLFenestraRenderNode* render, vtkMRMLCameraNode* camera);
   /// IDs of the node's segments, for SetFocus; empty without a segmentation.
   static std::vector<std::string> GetSegmentIDs(vtkMRMLFenestraRenderNode* render);
+  /// True if the node has a focus, directly or by a preset.
+  static bool HasFocus(vtkMRMLFenestraRenderNode* render);
   /// True if a render of the node has a clipping surface.
   static bool HasSurface(vtkMRMLFenestraRenderNode* render);
 
@@ -93,6 +122,8 @@ public:
   /// stays responsive. `step`: 0 to ResultSteps - 1. Replaces the frames of a resumed turntable.
   void AddResult(vtkMRMLFenestraRenderNode* render, const FenestraResult& result, int step);
   static constexpr int ResultSteps = 4;
+  /// Events of volumes and segmentations after which an image of them may be another one.
+  static const std::vector<unsigned long>& GetDataEvents();
 #endif
 
   /// Flag value of a plane of the Markups module; empty: no plane, or not placed yet.
@@ -129,6 +160,7 @@ protected:
   void SetMRMLSceneInternal(vtkMRMLScene* scene) override;
   /// Registers the module's layout, which the scene may have been saved with.
   void OnMRMLSceneStartImport() override;
+  void OnMRMLSceneNodeAdded(vtkMRMLNode* node) override;
   void OnMRMLSceneNodeRemoved(vtkMRMLNode* node) override;
   /// A view that the layout has just created changes its size, and sets its plane to its slider's
   /// first value.
@@ -139,6 +171,8 @@ private:
   vtkMRMLSliceLogic* GetPictureSliceLogic();
   SlicerExport::Matrix MoveOutsideVolume(vtkMRMLFenestraRenderNode* render,
                                          const SlicerExport::Matrix& ijkToRas);
+  /// Removes the nodes of a removed render's result; null: none.
+  void RemoveResults(vtkMRMLFenestraRenderNode* render);
   void MoveToRenderFolder(vtkMRMLFenestraRenderNode* render, vtkMRMLNode* result);
   void AddSurface(vtkMRMLFenestraRenderNode* render, vtkPolyData* surface);
   void AddFrames(vtkMRMLFenestraRenderNode* render, vtkImageData* frames);

@@ -220,9 +220,8 @@ void vtkSlicerFenestraLogic::MoveToRenderFolder(Node* render, vtkMRMLNode* resul
 }
 
 /// Removes the results of a removed render, and their folder.
-void vtkSlicerFenestraLogic::OnMRMLSceneNodeRemoved(vtkMRMLNode* node) {
+void vtkSlicerFenestraLogic::RemoveResults(Node* render) {
   vtkMRMLScene* scene = this->GetMRMLScene();
-  auto* render = Node::SafeDownCast(node);
   if (!render || !scene || scene->IsClosing())
     return;
   auto* hierarchy = vtkMRMLSubjectHierarchyNode::GetSubjectHierarchyNode(scene);

@@ -11,4 +11,6 @@ endforeach()
 foreach(name Lights Measures PreviewLabel Saving Widgets)
   list(APPEND widget_sources Widgets/qSlicerFenestra${name}.cxx Widgets/qSlicerFenestra${name}.h)
 endforeach()
-list(APPEND widget_sources Widgets/qSlicerFenestraAutomaticBox.h)
+list(APPEND widget_sources Widgets/qSlicerFenestraAutomaticBox.h Widgets/qSlicerFenestraOpening.cxx
+  Widgets/qSlicerFenestraOpening.h)
+list(APPEND widget_moc_sources Widgets/qSlicerFenestraOpening.h)

@@ -197,7 +197,7 @@ QList<qSlicerFenestraSegment> qSlicerFenestraSettingsPrivate::listFocusSegments(
 void qSlicerFenestraSettings::observe(vtkMRMLNode* volume, vtkMRMLNode* segmentation) {
   Q_D(qSlicerFenestraSettings);
   const auto observe = [this](vtkWeakPointer<vtkMRMLNode>& observed, vtkMRMLNode* node,
-                              std::initializer_list<unsigned long> events, const char* slot) {
+                              const std::vector<unsigned long>& events, const char* slot) {
     if (observed == node)
       return;
     for (const unsigned long event : events)
@@ -206,13 +206,7 @@ void qSlicerFenestraSettings::observe(vtkMRMLNode* volume, vtkMRMLNode* segmenta
   };
   for (const auto& [observed, node] :
        {std::pair(&d->volume, volume), std::pair(&d->segmentation, segmentation)})
-    observe(*observed, node,
-            {vtkCommand::ModifiedEvent, vtkMRMLVolumeNode::ImageDataModifiedEvent,
-             vtkMRMLTransformableNode::TransformModifiedEvent,
-             vtkMRMLDisplayableNode::DisplayModifiedEvent, vtkSegmentation::RepresentationModified,
-             vtkSegmentation::SegmentAdded, vtkSegmentation::SegmentRemoved,
-             vtkSegmentation::SegmentModified},
-            SLOT(onDataChanged()));
+    observe(*observed, node, vtkSlicerFenestraLogic::GetDataEvents(), SLOT(onDataChanged()));
   observe(d->camera, d->logic->GetFollowedCamera(d->node), {vtkCommand::ModifiedEvent},
           SIGNAL(changed()));
   observe(d->plane, d->node->GetNodeReference(Node::PlaneRole),

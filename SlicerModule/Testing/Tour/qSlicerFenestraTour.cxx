@@ -67,6 +67,7 @@ bool qSlicerFenestraTour::run() {
                         {"open", &qSlicerFenestraTour::showModule},
                         {"choose", &qSlicerFenestraTour::chooseCartilage},
                         {"turn", &qSlicerFenestraTour::turnCamera},
+                        {"openView", &qSlicerFenestraTour::openView},
                         {"render", &qSlicerFenestraTour::render},
                         {"stop", &qSlicerFenestraTour::stopRender},
                         {"clipping", &qSlicerFenestraTour::changeClipping},

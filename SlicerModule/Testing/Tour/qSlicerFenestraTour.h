@@ -22,6 +22,7 @@ private:
   bool turnCamera();
   int slowestTurn();
   void showVolumeRendering(bool visible);
+  bool openView();
   bool render();
   bool stopRender();
   bool changeClipping();

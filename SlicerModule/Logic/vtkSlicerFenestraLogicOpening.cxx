@@ -1,0 +1,111 @@
+// The opened view.
+
+#include "vtkSlicerFenestraLogic.h"
+
+#include "vtkMRMLFenestraOpeningNode.h"
+#include "vtkMRMLFenestraRenderNode.h"
+
+#include <vtkMRMLCPURayCastVolumeRenderingDisplayNode.h>
+#include <vtkMRMLScalarVolumeNode.h>
+#include <vtkMRMLScene.h>
+#include <vtkMRMLSegmentationNode.h>
+#include <vtkMRMLVolumeRenderingDisplayNode.h>
+#include <vtkSlicerVolumeRenderingLogic.h>
+
+#include <vtkMRMLApplicationLogic.h>
+
+namespace {
+using Node = vtkMRMLFenestraRenderNode;
+using Opening = vtkMRMLFenestraOpeningNode;
+vtkMRMLScalarVolumeNode* FindVolume(Node* settings) {
+  return vtkMRMLScalarVolumeNode::SafeDownCast(settings->GetNodeReference(Node::VolumeRole));
+}
+} // namespace
+
+bool vtkSlicerFenestraLogic::CanOpenView(Node* settings) {
+  return settings && FindVolume(settings) && HasFocus(settings);
+}
+
+std::string vtkSlicerFenestraLogic::FindOpeningProblem(Node* settings) {
+  const std::string mode = settings->GetFlag("clip");
+  if (!mode.empty() && mode != "auto" && mode != "surface" && mode != "cutaway")
+    return "The 3D view is cut only by a smooth surface, or in front of the focus. Choose one of "
+           "them under Clip.";
+  vtkMRMLScalarVolumeNode* volume = FindVolume(settings);
+  for (int i = 0; volume && i < volume->GetNumberOfDisplayNodes(); ++i)
+    if (vtkMRMLCPURayCastVolumeRenderingDisplayNode::SafeDownCast(volume->GetNthDisplayNode(i)))
+      return "The 3D view is cut only by GPU ray casting. Choose it in the Volume Rendering "
+             "module.";
+  return {};
+}
+
+Opening* vtkSlicerFenestraLogic::GetOpening() {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  return scene ? Opening::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLFenestraOpeningNode"))
+               : nullptr;
+}
+
+Opening* vtkSlicerFenestraLogic::OpenView(Node* settings) {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  if (!scene || !CanOpenView(settings)) {
+    vtkErrorMacro("OpenView: the settings have no volume, or no focus");
+    return nullptr;
+  }
+  vtkMRMLScalarVolumeNode* volume = FindVolume(settings);
+  auto* rendering =
+      vtkSlicerVolumeRenderingLogic::SafeDownCast(this->GetModuleLogic("VolumeRendering"));
+  vtkMRMLVolumeRenderingDisplayNode* display =
+      rendering ? rendering->GetFirstVolumeRenderingDisplayNode(volume) : nullptr;
+  if (rendering && !display)
+    display = rendering->CreateDefaultVolumeRenderingNodes(volume);
+  if (display)
+    display->SetVisibility(1);
+  Opening* opening = this->GetOpening();
+  if (!opening)
+    opening = Opening::SafeDownCast(
+        scene->AddNewNodeByClass("vtkMRMLFenestraOpeningNode", "Opened view"));
+  opening->SetNodeReferenceID(Opening::SettingsRole, settings->GetID());
+  opening->SetVisible(true);
+  return opening;
+}
+
+Opening* vtkSlicerFenestraLogic::OpenSegment(vtkMRMLSegmentationNode* segmentation,
+                                             const std::string& segmentId) {
+  Node* settings = this->GetSettings();
+  if (!settings || !segmentation) {
+    vtkErrorMacro("OpenSegment: there is no segmentation");
+    return nullptr;
+  }
+  const char* reference = vtkMRMLSegmentationNode::GetReferenceImageGeometryReferenceRole().c_str();
+  if (!FindVolume(settings))
+    settings->SetNodeReferenceID(Node::VolumeRole, segmentation->GetNodeReferenceID(reference));
+  settings->SetNodeReferenceID(Node::SegmentationRole, segmentation->GetID());
+  settings->SetFocus(std::vector<std::string>{segmentId});
+  return this->OpenView(settings);
+}
+
+Opening* vtkSlicerFenestraLogic::OpenVolume(vtkMRMLScalarVolumeNode* volume) {
+  Node* settings = this->GetSettings();
+  if (!settings || !volume) {
+    vtkErrorMacro("OpenVolume: there is no volume");
+    return nullptr;
+  }
+  settings->SetNodeReferenceID(Node::VolumeRole, volume->GetID());
+  return this->OpenView(settings);
+}
+
+void vtkSlicerFenestraLogic::CloseView() {
+  if (Opening* opening = this->GetOpening())
+    opening->SetVisible(false);
+}
+
+void vtkSlicerFenestraLogic::OnMRMLSceneNodeAdded(vtkMRMLNode* node) {
+  if (Opening::SafeDownCast(node))
+    this->InvokeEvent(OpeningChangedEvent);
+}
+
+void vtkSlicerFenestraLogic::OnMRMLSceneNodeRemoved(vtkMRMLNode* node) {
+  if (Opening::SafeDownCast(node))
+    this->InvokeEvent(OpeningChangedEvent);
+  this->RemoveResults(Node::SafeDownCast(node));
+}

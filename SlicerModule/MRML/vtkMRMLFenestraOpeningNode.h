@@ -1,0 +1,77 @@
+#ifndef __vtkMRMLFenestraOpeningNode_h
+#define __vtkMRMLFenestraOpeningNode_h
+
+#include <vtkMRMLNode.h>
+
+#ifndef __VTK_WRAP__
+#include "clip/portable/LiveSurface.h"
+
+#include <memory>
+#endif
+
+#include <string>
+
+#include "vtkSlicerFenestraModuleMRMLExport.h"
+
+class vtkMRMLFenestraRenderNode;
+
+/// \brief The opened view: the volume rendering in the 3D views, cut by the clipping surface of a
+/// focus.
+///
+/// Volume, segmentation, focus and clipping are those of the settings (reference `settings`). Saved
+/// with the scene, but for the triangles of the focus, which are made again.
+class VTK_SLICER_FENESTRA_MODULE_MRML_EXPORT vtkMRMLFenestraOpeningNode : public vtkMRMLNode {
+public:
+  static vtkMRMLFenestraOpeningNode* New();
+  vtkTypeMacro(vtkMRMLFenestraOpeningNode, vtkMRMLNode);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  vtkMRMLNode* CreateNodeInstance() override;
+  const char* GetNodeTagName() override { return "FenestraOpening"; }
+  void ReadXMLAttributes(const char** atts) override;
+  void WriteXML(ostream& of, int indent) override;
+  vtkMRMLCopyContentMacro(vtkMRMLFenestraOpeningNode);
+
+  /// True: the 3D views are opened.
+  vtkGetMacro(Visible, bool);
+  vtkSetMacro(Visible, bool);
+  vtkBooleanMacro(Visible, bool);
+
+  /// Null: none.
+  vtkMRMLFenestraRenderNode* GetSettings();
+  static constexpr const char* SettingsRole = "settings";
+
+  /// Why nothing is cut although the node is visible, as a sentence; empty: it is, or will be once
+  /// the triangles are there. Not saved.
+  const std::string& GetProblem() const { return this->Problem; }
+  void SetProblem(const std::string& problem);
+  /// True once the triangles of the focus are there.
+  bool HasFocus() const;
+
+#ifndef __VTK_WRAP__
+  /// The surface of the focus and the corners of the volume's box, RAS mm.
+  using Focus = std::shared_ptr<const fenestra::core::ClosedSurface>;
+  void SetFocus(const Focus& focus, const fenestra::core::BoxCorners& volume);
+  const Focus& GetFocus() const {
+    return this->Triangles;
+  }
+  const fenestra::core::BoxCorners& GetVolumeCorners() const {
+    return this->VolumeCorners;
+  }
+#endif
+
+protected:
+  vtkMRMLFenestraOpeningNode();
+  ~vtkMRMLFenestraOpeningNode() override;
+  vtkMRMLFenestraOpeningNode(const vtkMRMLFenestraOpeningNode&) = delete;
+  void operator=(const vtkMRMLFenestraOpeningNode&) = delete;
+
+  bool Visible = false;
+  std::string Problem;
+#ifndef __VTK_WRAP__
+  Focus Triangles;
+  fenestra::core::BoxCorners VolumeCorners = {};
+#endif
+};
+
+#endif

@@ -1,0 +1,150 @@
+#include "vtkMRMLFenestraOpeningDisplayableManager.h"
+
+#include "vtkFenestraOpeningPass.h"
+#include "vtkMRMLFenestraOpeningNode.h"
+#include "vtkMRMLFenestraRenderNode.h"
+
+#include <vtkMRMLScene.h>
+#include <vtkMRMLVolumeNode.h>
+
+#include <vtkCommand.h>
+#include <vtkGPUVolumeRayCastMapper.h>
+#include <vtkObjectFactory.h>
+#include <vtkRenderer.h>
+#include <vtkVolume.h>
+#include <vtkVolumeCollection.h>
+
+#include <cstdlib>
+
+vtkStandardNewMacro(vtkMRMLFenestraOpeningDisplayableManager);
+
+namespace {
+using Manager = vtkMRMLFenestraOpeningDisplayableManager;
+using Node = vtkMRMLFenestraRenderNode;
+
+} // namespace
+
+Manager::vtkMRMLFenestraOpeningDisplayableManager() = default;
+
+Manager::~vtkMRMLFenestraOpeningDisplayableManager() {
+  if (this->GetRenderer() && this->StartObserver)
+    this->GetRenderer()->RemoveObserver(this->StartObserver);
+  this->Observe(nullptr);
+}
+
+void Manager::PrintSelf(ostream& os, vtkIndent indent) {
+  Superclass::PrintSelf(os, indent);
+}
+
+bool Manager::IsOpened() {
+  return this->Pass->GetVolume() != nullptr && this->Opening && this->Opening->HasFocus();
+}
+
+double Manager::GetSeconds() {
+  return this->Pass->GetSeconds();
+}
+
+void Manager::Create() {
+  Superclass::Create();
+  constexpr float beforeOthers = 1.0f;
+  this->StartObserver = this->GetRenderer()->AddObserver(vtkCommand::StartEvent, this,
+                                                         &Manager::OnStart, beforeOthers);
+  this->UpdateFromMRML();
+}
+
+void Manager::UnobserveMRMLScene() {
+  Superclass::UnobserveMRMLScene();
+  this->Observe(nullptr);
+  this->Pass->Detach();
+}
+
+void Manager::OnMRMLSceneNodeAdded(vtkMRMLNode* node) {
+  if (vtkMRMLFenestraOpeningNode::SafeDownCast(node) && !this->GetMRMLScene()->IsBatchProcessing())
+    this->RequestUpdate();
+}
+
+void Manager::OnMRMLSceneNodeRemoved(vtkMRMLNode* node) {
+  if (node == this->Opening)
+    this->RequestUpdate();
+}
+
+void Manager::OnMRMLSceneEndImport() {
+  this->RequestUpdate();
+}
+
+void Manager::OnMRMLSceneEndClose() {
+  this->RequestUpdate();
+}
+
+void Manager::ProcessMRMLNodesEvents(vtkObject* caller, unsigned long event, void* data) {
+  if (caller && (caller == this->Opening || caller == this->Settings))
+    this->RequestUpdate();
+  else
+    Superclass::ProcessMRMLNodesEvents(caller, event, data);
+}
+
+void Manager::RequestUpdate() {
+  this->SetUpdateFromMRMLRequested(true);
+  this->RequestRender(); // calls UpdateFromMRML
+}
+
+/// Observes the opened view and its settings instead of those before.
+void Manager::Observe(vtkMRMLFenestraOpeningNode* opening) {
+  Node* settings = opening ? opening->GetSettings() : nullptr;
+  if (this->Opening != opening) {
+    vtkSetAndObserveMRMLNodeMacro(this->Opening, opening);
+  }
+  if (this->Settings != settings) {
+    vtkSetAndObserveMRMLNodeMacro(this->Settings, settings);
+  }
+}
+
+void Manager::UpdateFromMRML() {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  this->Observe(scene ? vtkMRMLFenestraOpeningNode::SafeDownCast(
+                            scene->GetFirstNodeByClass("vtkMRMLFenestraOpeningNode"))
+                      : nullptr);
+  if (this->Settings) {
+    const bool isCutaway = this->Settings->GetFlag("clip") == "cutaway";
+    this->Pass->SetMode(isCutaway ? vtkFenestraOpeningPass::Cutaway
+                                  : vtkFenestraOpeningPass::Surface);
+    this->Pass->SetOffset(std::strtod(this->Settings->GetFlag("offset").c_str(), nullptr));
+    this->Pass->SetSubject(this->Opening->GetFocus(), this->Opening->GetVolumeCorners());
+  }
+  this->AttachPass();
+}
+
+/// The volume to cut; null: none. The volume rendering's displayable manager has a function for it,
+/// but that logs an error if there is none.
+vtkVolume* Manager::FindVolume() {
+  if (!this->Settings || !this->Opening->GetVisible() || !this->Opening->HasFocus() ||
+      !this->Opening->GetProblem().empty())
+    return nullptr;
+  auto* node = vtkMRMLVolumeNode::SafeDownCast(this->Settings->GetNodeReference(Node::VolumeRole));
+  vtkAlgorithmOutput* image = node ? node->GetImageDataConnection() : nullptr;
+  vtkVolumeCollection* volumes = this->GetRenderer()->GetVolumes();
+  vtkCollectionSimpleIterator at;
+  volumes->InitTraversal(at);
+  while (vtkVolume* volume = volumes->GetNextVolume(at))
+    if (auto* mapper = vtkGPUVolumeRayCastMapper::SafeDownCast(volume->GetMapper());
+        mapper && image && mapper->GetInputConnection(0, 0) == image)
+      return volume;
+  return nullptr;
+}
+
+/// Returns whether the volume is another one than before.
+bool Manager::AttachPass() {
+  vtkVolume* volume = this->FindVolume();
+  if (volume == this->Pass->GetVolume())
+    return false;
+  if (volume)
+    this->Pass->Attach(this->GetRenderer(), volume);
+  else
+    this->Pass->Detach();
+  return true;
+}
+
+void Manager::OnStart() {
+  if (this->AttachPass())
+    this->RequestRender(); // the pass takes effect in the next frame
+}

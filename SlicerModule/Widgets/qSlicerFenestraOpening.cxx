@@ -1,0 +1,70 @@
+#include "qSlicerFenestraOpening.h"
+
+#include "qSlicerFenestraWidgets.h"
+#include "vtkMRMLFenestraOpeningNode.h"
+#include "vtkMRMLFenestraRenderNode.h"
+#include "vtkSlicerFenestraLogic.h"
+
+#include <vtkCommand.h>
+
+#include <QCheckBox>
+#include <QLabel>
+#include <QVBoxLayout>
+
+qSlicerFenestraOpening::qSlicerFenestraOpening(QWidget* parent)
+    : QWidget(parent),
+      m_box(new QCheckBox(tr("Open the 3D view"), this)),
+      m_state(new QLabel(this)) {
+  auto* column = new QVBoxLayout(this);
+  column->setContentsMargins(0, 0, 0, 0);
+  column->addWidget(m_box);
+  column->addWidget(m_state);
+  m_box->setObjectName("OpenBox");
+  m_box->setToolTip(tr("Cuts the volume rendering in front of the focus, as in an image, at every "
+                       "turn of the view. Models, markups and segments in front are not cut, and "
+                       "a click meets the removed tissue. Needs GPU ray casting."));
+  m_state->setObjectName("OpeningStateLabel");
+  m_state->setTextFormat(Qt::PlainText);
+  m_state->setWordWrap(true);
+  connect(m_box, &QCheckBox::clicked, this, &qSlicerFenestraOpening::onClicked);
+}
+
+void qSlicerFenestraOpening::setLogic(vtkSlicerFenestraLogic* logic) {
+  m_logic = logic;
+  qvtkConnect(logic, vtkSlicerFenestraLogic::OpeningChangedEvent, this, SLOT(onOpeningChanged()));
+  onOpeningChanged();
+}
+
+void qSlicerFenestraOpening::use(vtkMRMLFenestraRenderNode* settings) {
+  m_settings = settings;
+  updateWidgetFromMRML();
+}
+
+void qSlicerFenestraOpening::onOpeningChanged() {
+  vtkMRMLFenestraOpeningNode* opening = m_logic->GetOpening();
+  qvtkReconnect(m_opening, opening, vtkCommand::ModifiedEvent, this, SLOT(updateWidgetFromMRML()));
+  m_opening = opening;
+  updateWidgetFromMRML();
+}
+
+void qSlicerFenestraOpening::onClicked(bool isOpen) {
+  if (isOpen)
+    m_logic->OpenView(m_settings);
+  else
+    m_logic->CloseView();
+}
+
+void qSlicerFenestraOpening::updateWidgetFromMRML() {
+  const bool isVisible = m_opening && m_opening->GetVisible();
+  m_box->setChecked(isVisible);
+  qSlicerFenestraWidgets::setEnabled(m_box,
+                                     isVisible || vtkSlicerFenestraLogic::CanOpenView(m_settings),
+                                     tr("Choose a volume and a focus first"));
+  QString state;
+  if (isVisible && !m_opening->GetProblem().empty())
+    state = QString::fromStdString(m_opening->GetProblem());
+  else if (isVisible && !m_opening->HasFocus())
+    state = tr("Preparing the focus...");
+  m_state->setText(state);
+  m_state->setVisible(!state.isEmpty());
+}

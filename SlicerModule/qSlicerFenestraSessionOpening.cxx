@@ -1,0 +1,206 @@
+// The session's opened view: makes the triangles of the focus, again after every change.
+
+#include "qSlicerFenestraSession.h"
+
+#include "FenestraFlags.h"
+#include "vtkMRMLFenestraOpeningNode.h"
+
+#include <vtkMRMLScalarVolumeNode.h>
+#include <vtkMRMLScene.h>
+
+#include <vtkPolyData.h>
+#include <vtkQuadricDecimation.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include <QDebug>
+#include <QFileInfo>
+
+#include <sstream>
+
+namespace {
+
+using Node = vtkMRMLFenestraRenderNode;
+using Opening = vtkMRMLFenestraOpeningNode;
+
+/// Flags of the settings on which the focus depends.
+std::map<std::string, std::string> takeFocusFlags(Node* settings) {
+  std::map<std::string, std::string> flags;
+  for (const char* name : {"focus", "preset", "margin", "labelsmoothing"})
+    if (const std::string value = settings->GetFlag(name); !value.empty())
+      flags[name] = value;
+  return flags;
+}
+
+/// Key of everything on which the triangles depend.
+std::string makeFocusKey(const SlicerExport::Contents& contents,
+                         const std::map<std::string, std::string>& flags) {
+  std::ostringstream text;
+  text.precision(17);
+  text << contents.volumeKey << '\n' << contents.segmentationKey << '\n';
+  for (const SlicerExport::Matrix& matrix : {contents.volumeToWorld, contents.segmentation.toWorld})
+    for (const double element : matrix)
+      text << element << ' ';
+  for (const auto& [name, value] : flags)
+    text << '\n' << name << '=' << value;
+  return text.str();
+}
+
+/// Corners of the volume's box, which reaches half a voxel beyond the outermost centers, RAS mm.
+fenestra::core::BoxCorners findCorners(const SlicerExport::Contents& contents) {
+  const auto transform = [](const SlicerExport::Matrix& matrix, const std::array<double, 3>& at) {
+    std::array<double, 3> result;
+    for (std::size_t row = 0; row < 3; ++row)
+      result[row] = matrix[4 * row] * at[0] + matrix[4 * row + 1] * at[1] +
+                    matrix[4 * row + 2] * at[2] + matrix[4 * row + 3];
+    return result;
+  };
+  fenestra::core::BoxCorners corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    std::array<double, 3> index;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      index[axis] =
+          (i >> axis & 1U) == 0 ? -0.5 : static_cast<double>(contents.volume.size[axis]) - 0.5;
+    corners[i] = transform(contents.volumeToWorld, transform(contents.volume.ijkToRas, index));
+  }
+  return corners;
+}
+
+/// Reads the triangles of the focus, and makes them fewer where they are too many to be drawn for
+/// every camera.
+Opening::Focus readFocus(const QString& file) {
+  constexpr double maxTriangles = 50000.0;
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.toUtf8());
+  reader->Update();
+  vtkSmartPointer<vtkPolyData> mesh = reader->GetOutput();
+  if (const auto count = static_cast<double>(mesh->GetNumberOfCells()); count > maxTriangles) {
+    vtkNew<vtkQuadricDecimation> decimation;
+    decimation->SetInputData(mesh);
+    decimation->SetTargetReduction(1.0 - maxTriangles / count);
+    decimation->VolumePreservationOn();
+    decimation->Update();
+    mesh = decimation->GetOutput();
+  }
+  fenestra::core::SurfaceTriangles triangles;
+  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i) {
+    double point[3];
+    mesh->GetPoint(i, point);
+    for (const double coordinate : point)
+      triangles.points.push_back(static_cast<float>(coordinate));
+  }
+  vtkIdType size = 0;
+  const vtkIdType* corners = nullptr;
+  for (auto* cells = mesh->GetPolys(); cells->GetNextCell(size, corners);)
+    triangles.corners.insert(triangles.corners.end(), corners, corners + size);
+  return std::make_shared<const fenestra::core::ClosedSurface>(std::move(triangles));
+}
+
+} // namespace
+
+void qSlicerFenestraSession::onOpeningChanged() {
+  Opening* opening = m_logic->GetOpening();
+  qvtkReconnect(m_opening, opening, vtkCommand::ModifiedEvent, this, SLOT(refreshOpening()));
+  m_opening = opening;
+  m_focusKey.clear();
+  refreshOpening();
+}
+
+void qSlicerFenestraSession::refreshOpening() {
+  if (m_opening && m_opening->GetVisible() && !m_openingTimer.isActive())
+    m_openingTimer.start();
+}
+
+/// Observes the nodes on which the focus depends, instead of those observed before.
+void qSlicerFenestraSession::observeOpening(Node* settings) {
+  const auto observe = [this](vtkWeakPointer<vtkMRMLNode>& observed, vtkMRMLNode* node) {
+    if (observed == node)
+      return;
+    for (const unsigned long event : vtkSlicerFenestraLogic::GetDataEvents())
+      qvtkReconnect(observed, node, event, this, SLOT(refreshOpening()));
+    observed = node;
+  };
+  observe(m_openedNodes[0], settings);
+  observe(m_openedNodes[1], settings ? settings->GetNodeReference(Node::VolumeRole) : nullptr);
+  observe(m_openedNodes[2],
+          settings ? settings->GetNodeReference(Node::SegmentationRole) : nullptr);
+}
+
+void qSlicerFenestraSession::updateOpening() {
+  if (!m_opening || !m_opening->GetScene() || !m_opening->GetVisible())
+    return;
+  if (m_isReadingFocus || m_opening->GetScene()->IsBatchProcessing())
+    return m_openingTimer.start();
+  Node* const settings = m_opening->GetSettings();
+  observeOpening(settings);
+  try {
+    if (!settings)
+      throw SlicerExport::UserError("The settings of the opened view were removed. Open it again.");
+    const SlicerExport::Contents contents =
+        m_logic->Snapshot(settings, m_files->folder.path().toStdString());
+    const Flags flags = takeFocusFlags(settings);
+    if (!vtkSlicerFenestraLogic::HasFocus(settings))
+      throw SlicerExport::UserError("There is no focus. Choose a segment.");
+    const std::string key = makeFocusKey(contents, flags);
+    if (key == m_focusKey)
+      return showOpeningProblem();
+    m_focusKey = key;
+    startFocus(contents, flags);
+  } catch (const SlicerExport::UserError& error) {
+    m_focusKey.clear();
+    m_opening->SetFocus(nullptr, {});
+    m_opening->SetProblem(error.what());
+  }
+}
+
+/// That of the focus, or else of the settings.
+void qSlicerFenestraSession::showOpeningProblem() {
+  Node* const settings = m_opening->GetSettings();
+  m_opening->SetProblem(settings && m_focusProblem.empty()
+                            ? vtkSlicerFenestraLogic::FindOpeningProblem(settings)
+                            : m_focusProblem);
+}
+
+/// Lets the renderer write the triangles, since it smooths and trims the focus of images.
+void qSlicerFenestraSession::startFocus(const SlicerExport::Contents& contents,
+                                        const Flags& flags) {
+  m_isReadingFocus = true;
+  const fenestra::core::BoxCorners corners = findCorners(contents);
+  write(contents, [this, flags, corners, files = m_files](const QString& scene,
+                                                          const QString& message) {
+    if (!message.isEmpty())
+      return endFocus({}, corners, message);
+    const QString folder = QFileInfo(scene).absolutePath();
+    QStringList arguments = {"mesh", scene, "--quiet", "--output=focus.vtp"};
+    for (const std::string& argument : SlicerExport::toArguments(flags))
+      arguments << QString::fromStdString(argument);
+    auto* child = new qFenestraProgram(this);
+    connect(child, &qFenestraProgram::ended, this,
+            [this, child, folder, files, corners](const qFenestraOutcome& outcome) {
+              child->deleteLater();
+              if (outcome.kind != qFenestraOutcome::Kind::done) {
+                removeFolder(folder);
+                return endFocus({}, corners, toUserText(outcome.message, files->folder.path()));
+              }
+              runInWorker([this, folder, files, corners] {
+                const Opening::Focus focus = readFocus(folder + "/focus.vtp");
+                removeFolder(folder);
+                runInMainThread([this, focus, corners] { endFocus(focus, corners, {}); });
+              });
+            });
+    child->run(m_program, arguments, folder);
+  });
+}
+
+void qSlicerFenestraSession::endFocus(
+    const std::shared_ptr<const fenestra::core::ClosedSurface>& focus,
+    const fenestra::core::BoxCorners& corners, const QString& problem) {
+  m_isReadingFocus = false;
+  if (!m_opening)
+    return;
+  if (!problem.isEmpty())
+    qCritical().noquote() << "Fenestra:" << problem;
+  m_focusProblem = problem.toStdString();
+  m_opening->SetFocus(focus, corners);
+  showOpeningProblem();
+  refreshOpening(); // changes since
+}
