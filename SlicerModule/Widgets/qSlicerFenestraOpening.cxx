@@ -7,26 +7,28 @@
 
 #include <vtkCommand.h>
 
-#include <QCheckBox>
 #include <QLabel>
+#include <QPushButton>
 #include <QVBoxLayout>
 
 qSlicerFenestraOpening::qSlicerFenestraOpening(QWidget* parent)
     : QWidget(parent),
-      m_box(new QCheckBox(tr("Open the 3D view"), this)),
+      m_button(new QPushButton(tr("Open the view"), this)),
       m_state(new QLabel(this)) {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);
-  column->addWidget(m_box);
+  column->addWidget(m_button);
   column->addWidget(m_state);
-  m_box->setObjectName("OpenBox");
-  m_box->setToolTip(tr("Cuts the volume rendering in front of the focus, as in an image, at every "
-                       "turn of the view. Models, markups and segments in front are not cut, and "
-                       "a click meets the removed tissue. Needs GPU ray casting."));
+  m_button->setObjectName("OpenButton");
+  m_button->setCheckable(true);
+  m_button->setToolTip(
+      tr("Cuts the volume rendering in the 3D views in front of the focus, as in an image, at "
+         "every turn. Models, markups and segments in front are not cut, and "
+         "a click meets the removed tissue. Needs GPU ray casting."));
   m_state->setObjectName("OpeningStateLabel");
   m_state->setTextFormat(Qt::PlainText);
   m_state->setWordWrap(true);
-  connect(m_box, &QCheckBox::clicked, this, &qSlicerFenestraOpening::onClicked);
+  connect(m_button, &QPushButton::clicked, this, &qSlicerFenestraOpening::onClicked);
 }
 
 void qSlicerFenestraOpening::setLogic(vtkSlicerFenestraLogic* logic) {
@@ -56,8 +58,8 @@ void qSlicerFenestraOpening::onClicked(bool isOpen) {
 
 void qSlicerFenestraOpening::updateWidgetFromMRML() {
   const bool isVisible = m_opening && m_opening->GetVisible();
-  m_box->setChecked(isVisible);
-  qSlicerFenestraWidgets::setEnabled(m_box,
+  m_button->setChecked(isVisible);
+  qSlicerFenestraWidgets::setEnabled(m_button,
                                      isVisible || vtkSlicerFenestraLogic::CanOpenView(m_settings),
                                      tr("Choose a volume and a focus first"));
   QString state;

@@ -6,7 +6,7 @@
 #include <ctkVTKObject.h>
 #include <vtkWeakPointer.h>
 
-class QCheckBox;
+class QPushButton;
 class QLabel;
 class vtkMRMLFenestraOpeningNode;
 class vtkMRMLFenestraRenderNode;
@@ -34,7 +34,7 @@ private:
   vtkSlicerFenestraLogic* m_logic = nullptr;
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_settings;
   vtkWeakPointer<vtkMRMLFenestraOpeningNode> m_opening;
-  QCheckBox* m_box;
+  QPushButton* m_button;
   QLabel* m_state;
 };
 

@@ -8,8 +8,8 @@
 
 #include <vtkMRMLVolumeRenderingDisplayNode.h>
 
-#include <QCheckBox>
 #include <QLabel>
+#include <QPushButton>
 
 namespace {
 
@@ -34,15 +34,15 @@ bool isNearRadius(Opening* opening, double expected) {
 }
 
 int open(const Panel& panel, vtkMRMLScene* scene) {
-  auto* box = panel.find<QCheckBox>("OpenBox");
-  CHECK_BOOL(box->isEnabled(), false); // no focus yet
+  auto* button = panel.find<QPushButton>("OpenButton");
+  CHECK_BOOL(button->isEnabled(), false); // no focus yet
   TESTING_OUTPUT_ASSERT_ERRORS_BEGIN();
   CHECK_NULL(panel.logic->OpenView(panel.settings()));
   CHECK_NULL(panel.logic->OpenView(nullptr));
   TESTING_OUTPUT_ASSERT_ERRORS_END();
   panel.settings()->SetFocus("Ball");
-  CHECK_BOOL(waitFor([&] { return box->isEnabled(); }), true);
-  box->click();
+  CHECK_BOOL(waitFor([&] { return button->isEnabled(); }), true);
+  button->click();
   Opening* opening = panel.logic->GetOpening();
   CHECK_NOT_NULL(opening);
   CHECK_BOOL(opening->GetVisible(), true);
@@ -92,11 +92,11 @@ int explainModes(const Panel& panel) {
 int closeAndReopen(const Panel& panel) {
   Opening* opening = panel.logic->GetOpening();
   panel.logic->CloseView();
-  CHECK_BOOL(panel.find<QCheckBox>("OpenBox")->isChecked(), false);
+  CHECK_BOOL(panel.find<QPushButton>("OpenButton")->isChecked(), false);
   panel.settings()->SetFlag("margin", "-3");
   CHECK_BOOL(isNearRadius(opening, 10.0), true);
   CHECK_NOT_NULL(panel.logic->OpenView(panel.settings()));
-  CHECK_BOOL(panel.find<QCheckBox>("OpenBox")->isChecked(), true);
+  CHECK_BOOL(panel.find<QPushButton>("OpenButton")->isChecked(), true);
   CHECK_BOOL(waitFor([&] { return isNearRadius(opening, 7.0); }), true);
   return EXIT_SUCCESS;
 }
@@ -110,7 +110,7 @@ int saveAndLoad(const Panel& panel, vtkMRMLScene* scene) {
   CHECK_BOOL(saved.find("visible=\"true\"") != std::string::npos, true);
   scene->Clear(0); // while the opened view exists
   CHECK_NULL(panel.logic->GetOpening());
-  CHECK_BOOL(waitFor([&] { return !panel.find<QCheckBox>("OpenBox")->isChecked(); }), true);
+  CHECK_BOOL(waitFor([&] { return !panel.find<QPushButton>("OpenButton")->isChecked(); }), true);
   return EXIT_SUCCESS;
 }
 

@@ -3,6 +3,7 @@
 import pathlib
 import re
 import tempfile
+import time
 import unittest
 
 import qt
@@ -17,6 +18,13 @@ def process_events():
     loop.exec_()
     for _ in range(5):
         slicer.app.processEvents()
+
+
+def wait_for(condition, seconds=120):
+    end = time.monotonic() + seconds
+    while not condition() and time.monotonic() < end:
+        process_events()
+    return condition()
 
 
 class FenestraScriptTest(unittest.TestCase):
@@ -98,6 +106,22 @@ class FenestraScriptTest(unittest.TestCase):
         self.assertEqual(len(ended), 1)
         self.assertIn("gone", ended[0])
         self.assertEqual(slicer.mrmlScene.GetNumberOfNodes(), nodes)
+
+    def test_opened_view(self):
+        """A 3D view is cut while it is opened, by the surface of the focus that the settings name."""
+        self.assertEqual(self.errors(lambda: self.logic.OpenView(None)), (None, 1))
+        slicer.app.layoutManager().setLayout(slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView)
+        view = slicer.app.layoutManager().threeDWidget(0).threeDView()
+        manager = view.displayableManagerByClassName("vtkMRMLFenestraOpeningDisplayableManager")
+        self.assertIsNotNone(manager)
+        opening = self.logic.OpenView(self.settings)
+        self.assertEqual(self.logic.GetOpening(), opening)
+        self.assertTrue(wait_for(manager.IsOpened), opening.GetProblem())
+        view.forceRender()
+        self.assertGreater(manager.GetSeconds(), 0.0)
+        self.logic.CloseView()
+        self.assertTrue(wait_for(lambda: not manager.IsOpened()))
+        self.assertFalse(opening.GetVisible())
 
     def test_shown_image_is_complete(self):
         """One call shows the image's plane, completely and beside a 3D view of the same width."""

@@ -68,7 +68,7 @@ bool qSlicerFenestraTour::openView() {
   m_pulse.start();
   QElapsedTimer watch;
   watch.start();
-  if (!manager || !click("OpenBox") || !waitFor([&] { return manager->IsOpened(); }))
+  if (!manager || !click("OpenButton") || !waitFor([&] { return manager->IsOpened(); }))
     return false;
   m_measurements["openingMs"] = static_cast<int>(watch.elapsed());
   wait(3000);
@@ -87,7 +87,7 @@ bool qSlicerFenestraTour::openView() {
   wait(3000);
   takeScreenshot("20-view-turned");
   camera->GetCamera()->Azimuth(-60.0);
-  if (!click("OpenBox") || !waitFor([&] { return !manager->IsOpened(); }))
+  if (!click("OpenButton") || !waitFor([&] { return !manager->IsOpened(); }))
     return false;
   wait(1000);
   const double closed = findChangedFraction(before, photographView());
