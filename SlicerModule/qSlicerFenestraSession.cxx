@@ -254,6 +254,8 @@ void qSlicerFenestraSession::closeScene() {
   m_previewKey.clear();
   m_previewFolder.clear();
   m_focusKey.clear();
+  if (m_focusProgram)
+    m_focusProgram->stop();
 }
 
 void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcome) {

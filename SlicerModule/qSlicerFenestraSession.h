@@ -14,6 +14,7 @@
 #include <QElapsedTimer>
 #include <QImage>
 #include <QMap>
+#include <QPointer>
 #include <QThreadPool>
 #include <QTimer>
 
@@ -98,6 +99,7 @@ private slots:
   void onRenderWait(vtkObject* logic, vtkObject* render);
   void onViewChanged();
   void onOpeningChanged();
+  void onOpenedDataChanged();
   void refreshOpening();
 
 private:
@@ -141,7 +143,10 @@ private:
   void showOpeningProblem();
   void observeOpening(vtkMRMLFenestraRenderNode* settings);
   void startFocus(const SlicerExport::Contents& contents, const Flags& flags);
-  void endFocus(const std::shared_ptr<const fenestra::core::ClosedSurface>& focus,
+  using Focus = vtkMRMLFenestraOpeningNode::Focus;
+  void readFocus(const QString& folder, const std::shared_ptr<Files>& files,
+                 const std::function<void(const Focus& focus, const QString& problem)>& then);
+  void endFocus(vtkMRMLFenestraOpeningNode* opening, const Focus& focus,
                 const fenestra::core::BoxCorners& corners, const QString& problem);
 
   vtkSlicerFenestraLogic* m_logic;
@@ -171,11 +176,13 @@ private:
   bool m_starting = false;
 
   vtkWeakPointer<vtkMRMLFenestraOpeningNode> m_opening;
-  std::array<vtkWeakPointer<vtkMRMLNode>, 3> m_openedNodes; ///< settings, volume, segmentation
-  QTimer m_openingTimer;      ///< merges changes; not restarted by further ones
+  vtkWeakPointer<vtkMRMLNode> m_openedSettings, m_openedVolume, m_openedSegmentation; ///< observed
+  QTimer m_openingTimer; ///< merges changes; not restarted by further ones
+  bool m_isOpenedDataChanged = false;
+  Flags m_focusFlags;
   std::string m_focusKey;     ///< of the triangles that the opened view has, or will have
-  std::string m_focusProblem; ///< why the last focus could not be read; empty: it was
-  bool m_isReadingFocus = false;
+  std::string m_focusProblem; ///< why the last focus could not be made; empty: it was
+  QPointer<qFenestraProgram> m_focusProgram;
 };
 
 #endif

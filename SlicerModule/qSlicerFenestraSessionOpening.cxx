@@ -5,6 +5,7 @@
 #include "FenestraFlags.h"
 #include "vtkMRMLFenestraOpeningNode.h"
 
+#include <vtkMRMLDisplayableNode.h>
 #include <vtkMRMLScalarVolumeNode.h>
 #include <vtkMRMLScene.h>
 
@@ -67,7 +68,7 @@ fenestra::core::BoxCorners findCorners(const SlicerExport::Contents& contents) {
 
 /// Reads the triangles of the focus, and makes them fewer where they are too many to be drawn for
 /// every camera.
-Opening::Focus readFocus(const QString& file) {
+Opening::Focus readTriangles(const QString& file) {
   constexpr double maxTriangles = 50000.0;
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(file.toUtf8());
@@ -108,6 +109,13 @@ void qSlicerFenestraSession::onOpeningChanged() {
 void qSlicerFenestraSession::refreshOpening() {
   if (m_opening && m_opening->GetVisible() && !m_openingTimer.isActive())
     m_openingTimer.start();
+  if (m_opening && !m_opening->GetVisible() && !m_focusProblem.empty())
+    m_focusKey.clear(); // so that opening it again tries again
+}
+
+void qSlicerFenestraSession::onOpenedDataChanged() {
+  m_isOpenedDataChanged = true;
+  refreshOpening();
 }
 
 /// Observes the nodes on which the focus depends, instead of those observed before.
@@ -115,35 +123,48 @@ void qSlicerFenestraSession::observeOpening(Node* settings) {
   const auto observe = [this](vtkWeakPointer<vtkMRMLNode>& observed, vtkMRMLNode* node) {
     if (observed == node)
       return;
-    for (const unsigned long event : vtkSlicerFenestraLogic::GetDataEvents())
-      qvtkReconnect(observed, node, event, this, SLOT(refreshOpening()));
+    for (const unsigned long event : vtkSlicerFenestraLogic::GetDataEvents()) {
+      const bool isDisplay = event == vtkMRMLDisplayableNode::DisplayModifiedEvent;
+      qvtkReconnect(observed, node, event, this,
+                    isDisplay ? SLOT(refreshOpening()) : SLOT(onOpenedDataChanged()));
+    }
     observed = node;
+    m_isOpenedDataChanged = true;
   };
-  observe(m_openedNodes[0], settings);
-  observe(m_openedNodes[1], settings ? settings->GetNodeReference(Node::VolumeRole) : nullptr);
-  observe(m_openedNodes[2],
+  if (m_openedSettings != settings)
+    qvtkReconnect(m_openedSettings, settings, vtkCommand::ModifiedEvent, this,
+                  SLOT(refreshOpening()));
+  m_openedSettings = settings;
+  observe(m_openedVolume, settings ? settings->GetNodeReference(Node::VolumeRole) : nullptr);
+  observe(m_openedSegmentation,
           settings ? settings->GetNodeReference(Node::SegmentationRole) : nullptr);
 }
 
 void qSlicerFenestraSession::updateOpening() {
   if (!m_opening || !m_opening->GetScene() || !m_opening->GetVisible())
     return;
-  if (m_isReadingFocus || m_opening->GetScene()->IsBatchProcessing())
+  if (m_opening->GetPreparing() || m_opening->GetScene()->IsBatchProcessing())
     return m_openingTimer.start();
   Node* const settings = m_opening->GetSettings();
   observeOpening(settings);
   try {
     if (!settings)
       throw SlicerExport::UserError("The settings of the opened view were removed. Open it again.");
-    const SlicerExport::Contents contents =
-        m_logic->Snapshot(settings, m_files->folder.path().toStdString());
-    const Flags flags = takeFocusFlags(settings);
     if (!vtkSlicerFenestraLogic::HasFocus(settings))
       throw SlicerExport::UserError("There is no focus. Choose a segment.");
+    const Flags flags = takeFocusFlags(settings);
+    if (!m_isOpenedDataChanged && flags == m_focusFlags && !m_focusKey.empty())
+      return showOpeningProblem();
+    const SlicerExport::Contents contents =
+        m_logic->Snapshot(settings, m_files->folder.path().toStdString());
+    m_isOpenedDataChanged = false;
     const std::string key = makeFocusKey(contents, flags);
     if (key == m_focusKey)
       return showOpeningProblem();
+    if (flags != m_focusFlags || m_focusKey.empty())
+      m_opening->SetFocus(nullptr, {}); // of something else
     m_focusKey = key;
+    m_focusFlags = flags;
     startFocus(contents, flags);
   } catch (const SlicerExport::UserError& error) {
     m_focusKey.clear();
@@ -154,53 +175,66 @@ void qSlicerFenestraSession::updateOpening() {
 
 /// That of the focus, or else of the settings.
 void qSlicerFenestraSession::showOpeningProblem() {
-  Node* const settings = m_opening->GetSettings();
-  m_opening->SetProblem(settings && m_focusProblem.empty()
-                            ? vtkSlicerFenestraLogic::FindOpeningProblem(settings)
+  m_opening->SetProblem(m_focusProblem.empty()
+                            ? vtkSlicerFenestraLogic::FindOpeningProblem(m_opening->GetSettings())
                             : m_focusProblem);
 }
 
 /// Lets the renderer write the triangles, since it smooths and trims the focus of images.
 void qSlicerFenestraSession::startFocus(const SlicerExport::Contents& contents,
                                         const Flags& flags) {
-  m_isReadingFocus = true;
-  const fenestra::core::BoxCorners corners = findCorners(contents);
-  write(contents, [this, flags, corners, files = m_files](const QString& scene,
-                                                          const QString& message) {
-    if (!message.isEmpty())
-      return endFocus({}, corners, message);
-    const QString folder = QFileInfo(scene).absolutePath();
-    QStringList arguments = {"mesh", scene, "--quiet", "--output=focus.vtp"};
-    for (const std::string& argument : SlicerExport::toArguments(flags))
-      arguments << QString::fromStdString(argument);
-    auto* child = new qFenestraProgram(this);
-    connect(child, &qFenestraProgram::ended, this,
-            [this, child, folder, files, corners](const qFenestraOutcome& outcome) {
-              child->deleteLater();
-              if (outcome.kind != qFenestraOutcome::Kind::done) {
-                removeFolder(folder);
-                return endFocus({}, corners, toUserText(outcome.message, files->folder.path()));
-              }
-              runInWorker([this, folder, files, corners] {
-                const Opening::Focus focus = readFocus(folder + "/focus.vtp");
-                removeFolder(folder);
-                runInMainThread([this, focus, corners] { endFocus(focus, corners, {}); });
-              });
-            });
-    child->run(m_program, arguments, folder);
+  m_focusProblem.clear();
+  showOpeningProblem();
+  m_opening->SetPreparing(true);
+  const auto end = [this, opening = m_opening, corners = findCorners(contents)](
+                       const Opening::Focus& focus, const QString& problem) {
+    if (opening) // else its scene was closed
+      endFocus(opening, focus, corners, problem);
+  };
+  write(contents,
+        [this, flags, end, files = m_files](const QString& scene, const QString& message) {
+          if (!message.isEmpty())
+            return end({}, message);
+          const QString folder = QFileInfo(scene).absolutePath();
+          QStringList arguments = {"mesh", scene, "--quiet", "--output=focus.vtp"};
+          for (const std::string& argument : SlicerExport::toArguments(flags))
+            arguments << QString::fromStdString(argument);
+          auto* child = new qFenestraProgram(this);
+          m_focusProgram = child;
+          connect(child, &qFenestraProgram::ended, this,
+                  [this, child, folder, files, end](const qFenestraOutcome& outcome) {
+                    child->deleteLater();
+                    if (outcome.kind == qFenestraOutcome::Kind::done)
+                      return readFocus(folder, files, end);
+                    removeFolder(folder);
+                    const QString problem = toUserText(outcome.message, files->folder.path());
+                    end({}, problem.isEmpty() ? tr("The focus could not be prepared.") : problem);
+                  });
+          child->run(m_program, arguments, folder);
+        });
+}
+
+/// `files`: keeps the folder until it was read.
+void qSlicerFenestraSession::readFocus(
+    const QString& folder, const std::shared_ptr<Files>& files,
+    const std::function<void(const Opening::Focus& focus, const QString& problem)>& then) {
+  runInWorker([this, folder, files, then] {
+    const Opening::Focus focus = readTriangles(folder + "/focus.vtp");
+    removeFolder(folder);
+    runInMainThread([focus, then] { then(focus, {}); });
   });
 }
 
-void qSlicerFenestraSession::endFocus(
-    const std::shared_ptr<const fenestra::core::ClosedSurface>& focus,
-    const fenestra::core::BoxCorners& corners, const QString& problem) {
-  m_isReadingFocus = false;
-  if (!m_opening)
-    return;
+void qSlicerFenestraSession::endFocus(Opening* opening, const Opening::Focus& focus,
+                                      const fenestra::core::BoxCorners& corners,
+                                      const QString& problem) {
   if (!problem.isEmpty())
     qCritical().noquote() << "Fenestra:" << problem;
+  opening->SetPreparing(false);
+  if (opening != m_opening)
+    return;
   m_focusProblem = problem.toStdString();
-  m_opening->SetFocus(focus, corners);
+  opening->SetFocus(focus, corners);
   showOpeningProblem();
   refreshOpening(); // changes since
 }

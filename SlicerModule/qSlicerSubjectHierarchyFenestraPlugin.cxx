@@ -1,12 +1,14 @@
 #include "qSlicerSubjectHierarchyFenestraPlugin.h"
 
 #include "vtkMRMLFenestraOpeningNode.h"
+#include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraLogic.h"
 
 #include <qSlicerSubjectHierarchyDefaultPlugin.h>
 #include <qSlicerSubjectHierarchyPluginHandler.h>
 
 #include <vtkMRMLScalarVolumeNode.h>
+#include <vtkMRMLScene.h>
 #include <vtkMRMLSegmentationNode.h>
 #include <vtkMRMLSubjectHierarchyNode.h>
 
@@ -74,6 +76,8 @@ QIcon qSlicerSubjectHierarchyFenestraPlugin::visibilityIcon(int visible) {
 
 void qSlicerSubjectHierarchyFenestraPlugin::setDisplayVisibility(vtkIdType item, int visible) {
   vtkMRMLFenestraOpeningNode* opening = findOpening(item);
+  if (opening != m_logic->GetOpening())
+    return;
   if (opening && visible)
     m_logic->OpenView(opening->GetSettings());
   else if (opening)
@@ -82,7 +86,9 @@ void qSlicerSubjectHierarchyFenestraPlugin::setDisplayVisibility(vtkIdType item,
 
 int qSlicerSubjectHierarchyFenestraPlugin::getDisplayVisibility(vtkIdType item) const {
   vtkMRMLFenestraOpeningNode* opening = findOpening(item);
-  return opening && opening->GetVisible() ? 1 : 0;
+  if (!opening || opening != m_logic->GetOpening())
+    return -1; // a copy, which opens nothing
+  return opening->GetVisible() ? 1 : 0;
 }
 
 QList<QAction*> qSlicerSubjectHierarchyFenestraPlugin::visibilityContextMenuActions() const {
@@ -94,8 +100,11 @@ void qSlicerSubjectHierarchyFenestraPlugin::showVisibilityContextMenuActionsForI
   if (!hierarchy() || !item)
     return;
   const bool isSegment = !getSegmentId(hierarchy(), item).empty();
-  auto* volume = vtkMRMLScalarVolumeNode::SafeDownCast(hierarchy()->GetItemDataNode(item));
-  m_openAction->setVisible(isSegment || (volume && m_logic->HasFocus(m_logic->GetSettings())));
+  const vtkMRMLNode* node = hierarchy()->GetItemDataNode(item);
+  const bool isVolume = node && QString(node->GetClassName()) == "vtkMRMLScalarVolumeNode";
+  auto* settings = vtkMRMLFenestraRenderNode::SafeDownCast(
+      hierarchy()->GetScene()->GetSingletonNode("Settings", "vtkMRMLFenestraRenderNode"));
+  m_openAction->setVisible(isSegment || (isVolume && vtkSlicerFenestraLogic::HasFocus(settings)));
 }
 
 void qSlicerSubjectHierarchyFenestraPlugin::openCurrentItem() {

@@ -78,8 +78,8 @@ public:
   /// from now on and for every camera. Shows the volume rendering, created if missing. Null: there
   /// is no volume or no focus, the log says so.
   vtkMRMLFenestraOpeningNode* OpenView(vtkMRMLFenestraRenderNode* settings);
-  /// The same after setting the focus to one segment. If the settings have no volume, takes the one
-  /// on which the segmentation was made.
+  /// The same after setting the focus to one segment. If it is of another segmentation than before,
+  /// or there was no volume, takes the volume on which the segmentation was made.
   vtkMRMLFenestraOpeningNode* OpenSegment(vtkMRMLSegmentationNode* segmentation,
                                           const std::string& segmentId);
   /// The same with another volume.

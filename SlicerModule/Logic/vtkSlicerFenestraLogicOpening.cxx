@@ -5,7 +5,6 @@
 #include "vtkMRMLFenestraOpeningNode.h"
 #include "vtkMRMLFenestraRenderNode.h"
 
-#include <vtkMRMLCPURayCastVolumeRenderingDisplayNode.h>
 #include <vtkMRMLScalarVolumeNode.h>
 #include <vtkMRMLScene.h>
 #include <vtkMRMLSegmentationNode.h>
@@ -27,15 +26,20 @@ bool vtkSlicerFenestraLogic::CanOpenView(Node* settings) {
 }
 
 std::string vtkSlicerFenestraLogic::FindOpeningProblem(Node* settings) {
+  if (!settings)
+    return {};
   const std::string mode = settings->GetFlag("clip");
   if (!mode.empty() && mode != "auto" && mode != "surface" && mode != "cutaway")
     return "The 3D view is cut only by a smooth surface, or in front of the focus. Choose one of "
            "them under Clip.";
   vtkMRMLScalarVolumeNode* volume = FindVolume(settings);
-  for (int i = 0; volume && i < volume->GetNumberOfDisplayNodes(); ++i)
-    if (vtkMRMLCPURayCastVolumeRenderingDisplayNode::SafeDownCast(volume->GetNthDisplayNode(i)))
+  for (int i = 0; volume && i < volume->GetNumberOfDisplayNodes(); ++i) {
+    auto* display = vtkMRMLVolumeRenderingDisplayNode::SafeDownCast(volume->GetNthDisplayNode(i));
+    if (display && display->GetVisibility() &&
+        !display->IsA("vtkMRMLGPURayCastVolumeRenderingDisplayNode"))
       return "The 3D view is cut only by GPU ray casting. Choose it in the Volume Rendering "
              "module.";
+  }
   return {};
 }
 
@@ -76,9 +80,11 @@ Opening* vtkSlicerFenestraLogic::OpenSegment(vtkMRMLSegmentationNode* segmentati
     vtkErrorMacro("OpenSegment: there is no segmentation");
     return nullptr;
   }
-  const char* reference = vtkMRMLSegmentationNode::GetReferenceImageGeometryReferenceRole().c_str();
-  if (!FindVolume(settings))
-    settings->SetNodeReferenceID(Node::VolumeRole, segmentation->GetNodeReferenceID(reference));
+  const std::string role = vtkMRMLSegmentationNode::GetReferenceImageGeometryReferenceRole();
+  const char* reference = segmentation->GetNodeReferenceID(role.c_str());
+  const bool isOther = settings->GetNodeReference(Node::SegmentationRole) != segmentation;
+  if (!FindVolume(settings) || (isOther && reference))
+    settings->SetNodeReferenceID(Node::VolumeRole, reference);
   settings->SetNodeReferenceID(Node::SegmentationRole, segmentation->GetID());
   settings->SetFocus(std::vector<std::string>{segmentId});
   return this->OpenView(settings);

@@ -306,7 +306,10 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
         key << ' ' << component;
     }
     result.layers.push_back(ToLayer(labels, first));
-    key << '\n' << MakeKey(labels, "", result.layers.back().labels);
+    SlicerExport::Image own =
+        result.layers.back().labels; // which may be resampled, to another array
+    own.data = {own.data, labels->GetPointData()->GetScalars()->GetVoidPointer(0)};
+    key << '\n' << MakeKey(labels, "", own);
   }
   for (const std::string& name : focus) { // scripts may pass names, the panel passes ids
     const std::string idByName = segmentation->GetSegmentIdBySegmentName(name);

@@ -32,10 +32,8 @@ void vtkMRMLFenestraOpeningNode::WriteXML(ostream& of, int indent) {
 void vtkMRMLFenestraOpeningNode::CopyContent(vtkMRMLNode* other, bool deep) {
   const int wasModifying = this->StartModify();
   Superclass::CopyContent(other, deep);
-  if (auto* opening = vtkMRMLFenestraOpeningNode::SafeDownCast(other)) {
+  if (auto* opening = vtkMRMLFenestraOpeningNode::SafeDownCast(other)) // the focus is made again
     this->SetVisible(opening->GetVisible());
-    this->SetFocus(opening->Triangles, opening->VolumeCorners);
-  }
   this->EndModify(wasModifying);
 }
 

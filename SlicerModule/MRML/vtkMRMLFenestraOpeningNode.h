@@ -47,6 +47,9 @@ public:
   void SetProblem(const std::string& problem);
   /// True once the triangles of the focus are there.
   bool HasFocus() const;
+  /// True while newer triangles are made. Not saved.
+  vtkGetMacro(Preparing, bool);
+  vtkSetMacro(Preparing, bool);
 
 #ifndef __VTK_WRAP__
   /// The surface of the focus and the corners of the volume's box, RAS mm.
@@ -67,6 +70,7 @@ protected:
   void operator=(const vtkMRMLFenestraOpeningNode&) = delete;
 
   bool Visible = false;
+  bool Preparing = false;
   std::string Problem;
 #ifndef __VTK_WRAP__
   Focus Triangles;

@@ -68,11 +68,8 @@ void Manager::OnMRMLSceneNodeRemoved(vtkMRMLNode* node) {
     this->RequestUpdate();
 }
 
-void Manager::OnMRMLSceneEndImport() {
-  this->RequestUpdate();
-}
-
-void Manager::OnMRMLSceneEndClose() {
+/// After imports, closing, restored scene views and batches of scripts.
+void Manager::OnMRMLSceneEndBatchProcess() {
   this->RequestUpdate();
 }
 

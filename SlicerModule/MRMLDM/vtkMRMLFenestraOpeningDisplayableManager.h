@@ -27,7 +27,7 @@ public:
 
   /// True if the view's next frame is cut.
   bool IsOpened();
-  /// Processor time of the last surface, seconds.
+  /// Duration of the computation of the last surface.
   double GetSeconds();
 
 protected:
@@ -41,8 +41,7 @@ protected:
   void UnobserveMRMLScene() override;
   void OnMRMLSceneNodeAdded(vtkMRMLNode* node) override;
   void OnMRMLSceneNodeRemoved(vtkMRMLNode* node) override;
-  void OnMRMLSceneEndImport() override;
-  void OnMRMLSceneEndClose() override;
+  void OnMRMLSceneEndBatchProcess() override;
   void ProcessMRMLNodesEvents(vtkObject* caller, unsigned long event, void* data) override;
   void UpdateFromMRML() override;
 

@@ -53,7 +53,7 @@ qFenestraProgram::qFenestraProgram(QObject* parent) : QProcess(parent) {
 }
 
 qFenestraProgram::~qFenestraProgram() {
-  disconnect();
+  blockSignals(true); // not disconnected, since connections keep files alive until the child's end
   if (state() == QProcess::NotRunning)
     return;
   constexpr int graceMs = 200;

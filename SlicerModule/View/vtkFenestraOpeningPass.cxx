@@ -14,8 +14,8 @@
 #include <vtkTextureObject.h>
 #include <vtkVolume.h>
 
+#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -29,12 +29,6 @@ using fenestra::core::LiveCamera;
 /// For samplers that are not used. VTK takes units from 0 upward, and one of a 3D texture would be
 /// an error of OpenGL, which has at least 48 units.
 constexpr int unusedTextureUnit = 47;
-
-double GetThreadSeconds() {
-  std::timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 auto ToTuple(const LiveCamera& camera) {
   return std::tie(camera.position, camera.target, camera.up, camera.isPerspective, camera.angle,
@@ -235,7 +229,7 @@ void vtkFenestraOpeningPass::OnEnd() {
 
 bool vtkFenestraOpeningPass::Update(const LiveCamera& camera, vtkOpenGLRenderWindow* window) {
   ++this->Updates;
-  const double start = GetThreadSeconds();
+  const auto start = std::chrono::steady_clock::now();
   fenestra::core::LiveSurface surface;
   try {
     surface = fenestra::core::buildLiveSurface(*this->Focus, this->Box, camera);
@@ -247,6 +241,7 @@ bool vtkFenestraOpeningPass::Update(const LiveCamera& camera, vtkOpenGLRenderWin
     this->FocusMap.Upload(std::move(surface.focus), vtkTextureObject::Nearest, window);
     this->FillMap.Upload(std::move(surface.fill), vtkTextureObject::Linear, window);
   }
-  this->Seconds = GetThreadSeconds() - start;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  this->Seconds = elapsed.count();
   return hasSurface;
 }

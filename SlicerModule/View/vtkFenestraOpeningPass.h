@@ -50,7 +50,7 @@ public:
   int GetUpdates() { return this->Updates; }
   /// Number of shader texts composed.
   int GetBuilds() { return this->Builds; }
-  /// CPU time of the calling thread for the last surface.
+  /// Duration of the computation of the last surface.
   double GetSeconds() { return this->Seconds; }
 
   /// Does nothing: the pass is not a renderer's.

@@ -65,7 +65,7 @@ void qSlicerFenestraOpening::updateWidgetFromMRML() {
   QString state;
   if (isVisible && !m_opening->GetProblem().empty())
     state = QString::fromStdString(m_opening->GetProblem());
-  else if (isVisible && !m_opening->HasFocus())
+  else if (isVisible && m_opening->GetPreparing())
     state = tr("Preparing the focus...");
   m_state->setText(state);
   m_state->setVisible(!state.isEmpty());

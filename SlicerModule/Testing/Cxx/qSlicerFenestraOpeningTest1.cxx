@@ -88,6 +88,23 @@ int explainModes(const Panel& panel) {
   return EXIT_SUCCESS;
 }
 
+/// The triangles of a segmentation whose layers have different grids are made once.
+int settleWithTwoGrids(const Panel& panel, vtkMRMLSegmentationNode* segmentation) {
+  Opening* opening = panel.logic->GetOpening();
+  vtkNew<vtkOrientedImageData> labels;
+  FenestraTesting::fillBall(labels, VTK_UNSIGNED_CHAR, 1.0);
+  labels->SetOrigin(-12.5, -16.0, -16.0);
+  segmentation->AddSegmentFromBinaryLabelmapRepresentation(labels, "Shifted");
+  CHECK_BOOL(waitFor([&] { return opening->GetPreparing(); }), true);
+  CHECK_BOOL(waitFor([&] { return !opening->GetPreparing(); }), true);
+  QElapsedTimer watch;
+  watch.start();
+  waitFor([&] { return opening->GetPreparing() || watch.elapsed() > 1000; });
+  CHECK_BOOL(opening->GetPreparing(), false);
+  segmentation->RemoveSegment("Shifted");
+  return EXIT_SUCCESS;
+}
+
 /// A hidden opened view does no work; the box shows the state that a script sets.
 int closeAndReopen(const Panel& panel) {
   Opening* opening = panel.logic->GetOpening();
@@ -114,6 +131,31 @@ int saveAndLoad(const Panel& panel, vtkMRMLScene* scene) {
   return EXIT_SUCCESS;
 }
 
+/// Adds a ball and its segment, and opens the view on it.
+void addAndOpen(const Panel& panel, vtkMRMLScene* scene, const char* margin) {
+  auto* volume = FenestraTesting::addVolume(scene);
+  auto* segmentation = FenestraTesting::addSegmentation(scene);
+  panel.settings()->SetNodeReferenceID(Node::VolumeRole, volume->GetID());
+  panel.settings()->SetNodeReferenceID(Node::SegmentationRole, segmentation->GetID());
+  panel.settings()->SetFlag("margin", margin);
+  panel.settings()->SetFocus("Ball");
+  panel.logic->OpenView(panel.settings());
+}
+
+/// The focus of a scene that was closed while it was prepared is not that of the next scene.
+int closeWhilePreparing(const Panel& panel, vtkMRMLScene* scene) {
+  addAndOpen(panel, scene, "-5");
+  CHECK_BOOL(waitFor([&] { return panel.logic->GetOpening()->GetPreparing(); }), true);
+  scene->Clear(0);
+  addAndOpen(panel, scene, "");
+  Opening* opening = panel.logic->GetOpening();
+  CHECK_BOOL(waitFor([&] { return opening->HasFocus(); }), true);
+  CHECK_BOOL(isNearRadius(opening, 10.0), true);
+  CHECK_BOOL(waitFor([&] { return !opening->GetPreparing(); }), true);
+  CHECK_BOOL(isNearRadius(opening, 10.0), true);
+  return EXIT_SUCCESS;
+}
+
 } // namespace
 
 int qSlicerFenestraOpeningTest1(int argc, char* argv[]) {
@@ -128,7 +170,9 @@ int qSlicerFenestraOpeningTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(open(panel, slicer.scene));
   CHECK_EXIT_SUCCESS(followEdits(panel, segmentation));
   CHECK_EXIT_SUCCESS(explainModes(panel));
+  CHECK_EXIT_SUCCESS(settleWithTwoGrids(panel, segmentation));
   CHECK_EXIT_SUCCESS(closeAndReopen(panel));
   CHECK_EXIT_SUCCESS(saveAndLoad(panel, slicer.scene));
+  CHECK_EXIT_SUCCESS(closeWhilePreparing(panel, slicer.scene));
   return EXIT_SUCCESS;
 }
