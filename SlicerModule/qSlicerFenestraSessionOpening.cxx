@@ -69,7 +69,7 @@ fenestra::core::BoxCorners findCorners(const SlicerExport::Contents& contents) {
 /// Reads the triangles of the focus, and makes them fewer where they are too many to be drawn for
 /// every camera.
 Opening::Focus readTriangles(const QString& file) {
-  constexpr double maxTriangles = 50000.0;
+  constexpr double maxTriangles = 100000.0; // about 10 ms of one core per camera
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(file.toUtf8());
   reader->Update();
