@@ -129,7 +129,7 @@ void qSlicerFenestraSession::observeOpening(Node* settings) {
                     isDisplay ? SLOT(refreshOpening()) : SLOT(onOpenedDataChanged()));
     }
     observed = node;
-    m_isOpenedDataChanged = true;
+    m_focusKey.clear(); // the focus is another one
   };
   if (m_openedSettings != settings)
     qvtkReconnect(m_openedSettings, settings, vtkCommand::ModifiedEvent, this,

@@ -105,6 +105,22 @@ int settleWithTwoGrids(const Panel& panel, vtkMRMLSegmentationNode* segmentation
   return EXIT_SUCCESS;
 }
 
+/// Another volume is not cut by the former one's focus.
+int changeVolume(const Panel& panel, vtkMRMLScene* scene) {
+  Opening* opening = panel.logic->GetOpening();
+  CHECK_BOOL(waitFor([&] { return opening->HasFocus() && !opening->GetPreparing(); }), true);
+  vtkMRMLScalarVolumeNode* before =
+      vtkMRMLScalarVolumeNode::SafeDownCast(panel.settings()->GetNodeReference(Node::VolumeRole));
+  CHECK_NOT_NULL(panel.logic->OpenVolume(FenestraTesting::addVolume(scene)));
+  CHECK_BOOL(waitFor([&] { return opening->GetPreparing(); }), true);
+  CHECK_BOOL(opening->HasFocus(), false);
+  CHECK_BOOL(waitFor([&] { return isNearRadius(opening, 10.0); }), true);
+  CHECK_NOT_NULL(panel.logic->OpenVolume(before));
+  CHECK_BOOL(waitFor([&] { return opening->GetPreparing(); }), true);
+  CHECK_BOOL(waitFor([&] { return isNearRadius(opening, 10.0); }), true);
+  return EXIT_SUCCESS;
+}
+
 /// A hidden opened view does no work; the box shows the state that a script sets.
 int closeAndReopen(const Panel& panel) {
   Opening* opening = panel.logic->GetOpening();
@@ -171,6 +187,7 @@ int qSlicerFenestraOpeningTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(followEdits(panel, segmentation));
   CHECK_EXIT_SUCCESS(explainModes(panel));
   CHECK_EXIT_SUCCESS(settleWithTwoGrids(panel, segmentation));
+  CHECK_EXIT_SUCCESS(changeVolume(panel, slicer.scene));
   CHECK_EXIT_SUCCESS(closeAndReopen(panel));
   CHECK_EXIT_SUCCESS(saveAndLoad(panel, slicer.scene));
   CHECK_EXIT_SUCCESS(closeWhilePreparing(panel, slicer.scene));
