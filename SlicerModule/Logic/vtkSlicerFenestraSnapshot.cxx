@@ -181,18 +181,45 @@ void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, SlicerExport::Contents&
   contents.crop.push_back({text.str(), SlicerExport::identity});
 }
 
+/// Labels converted from surfaces, kept because most snapshots differ only in other things.
+struct CachedLabels {
+  vtkWeakPointer<vtkSegmentation> source;
+  vtkMTimeType time = 0;
+  vtkSmartPointer<vtkSegmentation> converted;
+};
+
+/// Last change of the segments and of their representations.
+vtkMTimeType GetLastChange(vtkSegmentation* segmentation) {
+  vtkMTimeType time = segmentation->GetMTime();
+  std::vector<std::string> ids, names;
+  segmentation->GetSegmentIDs(ids);
+  for (const std::string& id : ids) {
+    vtkSegment* segment = segmentation->GetSegment(id);
+    time = std::max(time, segment->GetMTime());
+    segment->GetContainedRepresentationNames(names);
+    for (const std::string& name : names)
+      time = std::max(time, segment->GetRepresentation(name)->GetMTime());
+  }
+  return time;
+}
+
 /// Segmentation with binary labelmaps; if it has only surfaces, a converted copy.
 vtkSmartPointer<vtkSegmentation> GetWithBinaryLabels(vtkMRMLSegmentationNode* node) {
   const std::string labels = vtkSegmentationConverter::GetBinaryLabelmapRepresentationName();
   vtkSmartPointer<vtkSegmentation> segmentation = node->GetSegmentation();
   if (segmentation->ContainsRepresentation(labels))
     return segmentation;
+  static CachedLabels cache; // used in the main thread only
+  const vtkMTimeType time = GetLastChange(segmentation);
+  if (cache.source.GetPointer() == segmentation.GetPointer() && cache.time == time)
+    return cache.converted;
   const auto copy = vtkSmartPointer<vtkSegmentation>::New();
   copy->DeepCopy(segmentation);
   if (!copy->CreateRepresentation(labels))
     throw UserError(Quote(node) +
                     " could not be converted to a labelmap. Create its binary labelmap in the "
                     "Segmentations module, then try again.");
+  cache = {segmentation.GetPointer(), time, copy};
   return copy;
 }
 
@@ -322,10 +349,6 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
       throw UserError("The segment \"" + std::string(segment->GetName()) +
                       "\" is empty. Paint it, or choose another focus.");
   }
-  // A converted copy has new arrays in each snapshot, so its key refers to the original.
-  contents.segmentationKey =
-      segmentation == node->GetSegmentation()
-          ? key.str()
-          : node->GetID() + (" " + std::to_string(node->GetSegmentation()->GetMTime()));
+  contents.segmentationKey = key.str();
   result.toWorld = GetWorldMatrix(node);
 }

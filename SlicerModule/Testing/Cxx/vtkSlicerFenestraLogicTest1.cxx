@@ -13,6 +13,7 @@
 #include <vtkMatrix4x4.h>
 #include <vtkPointData.h>
 #include <vtkSegment.h>
+#include <vtkSegmentationConverter.h>
 #include <vtkTransform.h>
 
 #include <algorithm>
@@ -66,6 +67,35 @@ int testCamera(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* setting
   return EXIT_SUCCESS;
 }
 
+/// A segmentation of surfaces is converted once, and again after a change of a surface.
+int testSurfaces(vtkSlicerFenestraLogic* logic, Node* settings) {
+  auto* node =
+      vtkMRMLSegmentationNode::SafeDownCast(settings->GetNodeReference(Node::SegmentationRole));
+  const std::string surface = vtkSegmentationConverter::GetClosedSurfaceRepresentationName();
+  vtkNew<vtkSegmentation> labels;
+  labels->DeepCopy(node->GetSegmentation());
+  vtkNew<vtkSegmentation> surfaces;
+  surfaces->DeepCopy(labels);
+  CHECK_BOOL(surfaces->CreateRepresentation(surface), true);
+#if Slicer_VERSION_MAJOR > 5 || (Slicer_VERSION_MAJOR == 5 && Slicer_VERSION_MINOR >= 4)
+  surfaces->SetSourceRepresentationName(surface);
+#else
+  surfaces->SetMasterRepresentationName(surface);
+#endif
+  surfaces->RemoveRepresentation(vtkSegmentationConverter::GetBinaryLabelmapRepresentationName());
+  node->SetAndObserveSegmentation(surfaces);
+  const SlicerExport::Contents first = logic->Snapshot(settings, folder);
+  CHECK_BOOL(first.segmentation.segments.empty(), false);
+  const SlicerExport::Contents second = logic->Snapshot(settings, folder);
+  CHECK_STD_STRING(second.segmentationKey, first.segmentationKey);
+  CHECK_BOOL(second.segmentation.layers[0].labels.data == first.segmentation.layers[0].labels.data,
+             true);
+  surfaces->GetNthSegment(0)->GetRepresentation(surface)->Modified();
+  CHECK_BOOL(logic->Snapshot(settings, folder).segmentationKey != first.segmentationKey, true);
+  node->SetAndObserveSegmentation(labels);
+  return EXIT_SUCCESS;
+}
+
 int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settings) {
   CHECK_BOOL(has(getSnapshotError(logic, settings), "no volume"), true);
   vtkMRMLScalarVolumeNode* volume = FenestraTesting::addVolume(scene);
@@ -105,6 +135,7 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
     CHECK_STD_STRING(one.tags, "TerminologyEntry:a~SCT^1^b|");
     CHECK_DOUBLE(one.color[0], 0.25);
   }
+  CHECK_EXIT_SUCCESS(testSurfaces(logic, settings));
   settings->SetFocus({"gone"});
   CHECK_BOOL(has(getSnapshotError(logic, settings), "gone"), true);
   settings->SetFocus({ids[0]});
@@ -174,6 +205,7 @@ int testTurntable(vtkSlicerFenestraLogic* logic, Node* settings) {
 } // namespace
 
 int vtkSlicerFenestraLogicTest1(int, char*[]) {
+  FenestraTesting::registerConverters();
   vtkNew<vtkMRMLScene> scene;
   vtkNew<vtkSlicerFenestraLogic> logic;
   EXERCISE_BASIC_OBJECT_METHODS(logic.GetPointer());
