@@ -8,6 +8,7 @@ import re
 import sys
 
 import vtkmodules.vtkCommonCore
+from FenestraPython import vtkMRMLFenestraOpeningNode as Opening
 from FenestraPython import vtkMRMLFenestraPictureDisplayNode as PictureDisplay
 from FenestraPython import vtkMRMLFenestraRenderNode as Node
 from FenestraPython import vtkMRMLVectorVolumeDisplayNode as VectorDisplay
@@ -109,3 +110,17 @@ def displayed(node):
 assert displayed(PictureDisplay()) == pixels, "color and opacity of the image"
 assert len(displayed(VectorDisplay())[0]) == 5, "the stand-in appends an opacity, as Slicer does"
 print("opacity of images: ok")
+
+opening = Opening()
+assert not opening.GetVisible() and not opening.HasFocus() and opening.GetSettings() is None
+opening.VisibleOn()
+opening.SetProblem("none")
+loaded = Opening()
+loaded.ReadAttributes(["visible", "true"])
+copied = Opening()
+copied.Copy(opening)
+assert 'visible="true"' in opening.ToXml() and loaded.GetVisible() and copied.GetVisible()
+for argument in (None, 3, opening):
+    attempt(opening.SetProblem, argument)
+    attempt(opening.Copy, argument)
+print("opened view: ok")

@@ -51,6 +51,7 @@ public:
   const char* GetNodeReferenceID(const char* role) {
     return this->References[role ? role : ""].c_str();
   }
+  vtkMRMLNode* GetNodeReference(const char*) { return nullptr; }
   int StartModify() { return 0; }
   void EndModify(int) {}
 

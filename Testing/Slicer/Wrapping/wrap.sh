@@ -30,7 +30,7 @@ fi
 wrap=$root/usr/bin/vtkWrapPython-9.1
 libraries=$root/usr/lib/x86_64-linux-gnu
 export LD_LIBRARY_PATH="$libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
-folders=("$here" "$module/Logic" "$module/MRML" "$module/Scene")
+folders=("$here" "$module/Logic" "$module/MRML" "$module/Scene" "$module/../Renderer")
 for export in vtkSlicerFenestraModuleLogicExport vtkSlicerFenestraModuleMRMLExport; do
   name=$(grep -rhoE 'VTK_SLICER_FENESTRA_MODULE_(LOGIC|MRML)_EXPORT' "$module/Logic" "$module/MRML" | sort -u)
   for one in $name; do printf '#ifndef %s\n#define %s\n#endif\n' "$one" "$one"; done >$export.h
@@ -59,10 +59,11 @@ done
 echo "wrapped and compiled: ${#headers[@]} headers"
 
 # Links the nodes into a Python module.
-printf '%s\n' FenestraPython vtkMRMLNode vtkMRMLFenestraRenderNode vtkMRMLVectorVolumeDisplayNode \
-  vtkMRMLFenestraPictureDisplayNode >init.txt
+printf '%s\n' FenestraPython vtkMRMLNode vtkMRMLFenestraOpeningNode vtkMRMLFenestraRenderNode \
+  vtkMRMLVectorVolumeDisplayNode vtkMRMLFenestraPictureDisplayNode >init.txt
 "$root/usr/bin/vtkWrapPythonInit-9.1" init.txt FenestraPythonInit.cxx FenestraPythonInitImpl.cxx
-for source in FenestraPythonInit.cxx FenestraPythonInitImpl.cxx "$module"/MRML/*.cxx "$module"/Scene/FenestraFlags.cxx; do
+for source in FenestraPythonInit.cxx FenestraPythonInitImpl.cxx "$module"/MRML/*.cxx "$module"/Scene/FenestraFlags.cxx \
+  "$module"/../Renderer/clip/portable/SurfaceDepth.cxx; do
   "${compile[@]}" -c "$source" -o "$(basename "$source" .cxx)Source.o"
   objects+=("$(basename "$source" .cxx)Source.o")
 done
