@@ -16,9 +16,8 @@ SurfaceTriangles makeBox(double lower, double upper) {
   for (int i = 0; i < 8; ++i)
     for (int axis = 0; axis < 3; ++axis)
       box.points.push_back(static_cast<float>((i >> axis & 1) == 0 ? lower : upper));
-  for (const std::uint32_t corner : {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
-                                     2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5})
-    box.corners.push_back(corner);
+  box.corners = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
   return box;
 }
 
