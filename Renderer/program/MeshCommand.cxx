@@ -76,8 +76,8 @@ int meshCommand(int argc, char** argv, int first) {
   const SurfaceMesh mesh = triangulate(*focus.input->mask, focus.volume);
   writeSurface(mesh, *path, outputs);
   outputs.commit();
-  for (const Message& warning : focus.input->warnings)
-    printWarning(composeMessage(warning));
+  for (const std::string& warning : composeMessages(focus.warnings))
+    printWarning(warning);
   if (!job.options.quiet)
     printLine(concat(*path, ": ", mesh.triangles.size(), " triangles"));
   return 0;

@@ -98,7 +98,7 @@ PreparedScene::Focus PreparedScene::readFocus(const RenderRequest& request, cons
   PreparedScene scene(request, input, Unprepared());
   scene.readInput();
   scene.prepareFocus();
-  return {scene.m_focus.result(), scene.rawVolume()->volume.grid};
+  return {scene.m_focus.result(), scene.rawVolume()->volume.grid, scene.inputWarnings()};
 }
 
 void PreparedScene::prepare(const StopFlag& stop) {
@@ -320,7 +320,7 @@ std::vector<std::string> PreparedScene::choices() const {
   return facts;
 }
 
-std::vector<Message> PreparedScene::warnings() const {
+std::vector<Message> PreparedScene::inputWarnings() const {
   std::vector<Message> warnings = m_request.omissions;
   append(volume().warnings, warnings);
   if (m_table.result())
@@ -332,6 +332,11 @@ std::vector<Message> PreparedScene::warnings() const {
   if (m_lungs.result())
     append(m_lungs->warnings, warnings);
   append(m_focus->warnings, warnings);
+  return warnings;
+}
+
+std::vector<Message> PreparedScene::warnings() const {
+  std::vector<Message> warnings = inputWarnings();
   append(m_transfer->warnings, warnings);
   if (m_focusWarnings.result())
     append(*m_focusWarnings, warnings);

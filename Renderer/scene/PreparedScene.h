@@ -39,6 +39,7 @@ public:
   struct Focus {
     FocusHandle input;
     Grid volume;
+    std::vector<Message> warnings; ///< of everything that was read for it
   };
   /// The focus of the request's scene, and the grid of its volume, without the other stages.
   /// Throws Error.
@@ -111,6 +112,8 @@ private:
   void readInput();
   /// The stages after the input that the focus needs.
   void prepareFocus();
+  /// Of readInput() and prepareFocus().
+  std::vector<Message> inputWarnings() const;
   /// Name of the materials to use; `segments`: null without labels.
   std::string resolveMaterials(const Handle<SegmentsInput>& segments) const;
   void makeTint(const std::string& name);

@@ -4,6 +4,7 @@
 #include "base/Vector.h"
 
 #include <cstring>
+#include <fstream>
 
 namespace fenestra::core::MeshCommandTests {
 namespace {
@@ -66,6 +67,20 @@ TEST_F(MeshCommand, FollowsTheOptionsOfTheFocus) {
   EXPECT_GT(smooth, 5000.0);
   EXPECT_NE(findVolume(folder / "raw.stl"), smooth);
   EXPECT_GT(findVolume(folder / "grown.stl"), 1.3 * smooth);
+}
+
+/// What readers assume about a file is a warning, as for an image: the mesh may lie elsewhere.
+TEST_F(MeshCommand, WarnsOfAssumptions) {
+  std::string voxels(8 * 8 * 8, '\0');
+  voxels[3 * 64 + 3 * 8 + 3] = 1;
+  std::ofstream(folder / "labels.nrrd") << "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 8 8 8\n"
+                                           "encoding: raw\n\n"
+                                        << voxels;
+  const Outcome outcome = run({"mesh", "labels.nrrd", "-s", "labels.nrrd", "--focus", "1",
+                               "--label-smoothing", "0", "-o", "a.stl"},
+                              folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("fenestra: warning: labels.nrrd"), std::string::npos) << outcome.err;
 }
 
 TEST_F(MeshCommand, RejectsWhatItCannotWrite) {

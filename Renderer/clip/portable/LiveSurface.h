@@ -27,7 +27,7 @@ struct LiveSurface {
   /// The view's part of the focus, at the pixels' centers; infinity: not focus.
   DepthMap focus;
   /// The surface beside the focus, over more than the view; empty if no sample shows the focus. In
-  /// the focus, the depths of the focus.
+  /// the focus its depths, but at the outline those of the surface beside it.
   DepthMap fill;
 };
 
