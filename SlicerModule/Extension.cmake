@@ -38,7 +38,8 @@ slicerMacroBuildLoadableModule(
        qSlicerFenestraSessionPreview.cxx
        qSlicerSubjectHierarchyFenestraPlugin.cxx qSlicerSubjectHierarchyFenestraPlugin.h
        ${widget_sources}
-  MOC_SRCS qSlicerSubjectHierarchyFenestraPlugin.h qSlicerFenestraModule.h qSlicerFenestraModuleWidget.h qSlicerFenestraSession.h
+  MOC_SRCS qSlicerFenestraModule.h qSlicerFenestraModuleWidget.h qSlicerFenestraSession.h
+           qSlicerSubjectHierarchyFenestraPlugin.h
            ${widget_moc_sources}
   UI_SRCS Resources/UI/qSlicerFenestraModuleWidget.ui ${widget_ui_sources}
   TARGET_LIBRARIES vtkSlicer${MODULE_NAME}ModuleLogic

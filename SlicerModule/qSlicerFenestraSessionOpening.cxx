@@ -9,6 +9,7 @@
 #include <vtkMRMLScalarVolumeNode.h>
 #include <vtkMRMLScene.h>
 
+#include <vtkCellArray.h>
 #include <vtkPolyData.h>
 #include <vtkQuadricDecimation.h>
 #include <vtkXMLPolyDataReader.h>
@@ -91,7 +92,9 @@ Opening::Focus readTriangles(const QString& file) {
   }
   vtkIdType size = 0;
   const vtkIdType* corners = nullptr;
-  for (auto* cells = mesh->GetPolys(); cells->GetNextCell(size, corners);)
+  vtkCellArray* const cells = mesh->GetPolys();
+  cells->InitTraversal();
+  while (cells->GetNextCell(size, corners))
     triangles.corners.insert(triangles.corners.end(), corners, corners + size);
   return std::make_shared<const fenestra::core::ClosedSurface>(std::move(triangles));
 }
@@ -221,7 +224,9 @@ void qSlicerFenestraSession::readFocus(
   runInWorker([this, folder, files, then] {
     const Opening::Focus focus = readTriangles(folder + "/focus.vtp");
     removeFolder(folder);
-    runInMainThread([focus, then] { then(focus, {}); });
+    runInMainThread([focus, then] {
+      then(focus, focus->corners().empty() ? tr("The focus has no surface.") : QString());
+    });
   });
 }
 

@@ -53,10 +53,9 @@ public:
   vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings, bool turntable = false);
 
   /// Requests to the renderer, which observes them: the module's session. The call data of the
-  /// first two is the render's node. OpeningChangedEvent: GetOpening
-  /// returns another node. RenderRequestedEvent: set the node's state, render, and call
+  /// first two is the render's node. RenderRequestedEvent: set the node's state, render, and call
   /// its EndRender. RenderWaitEvent: return when the render has ended. ViewChangedEvent: call
-  /// AlignView later.
+  /// AlignView later. OpeningChangedEvent: GetOpening may return another node.
   enum {
     RenderRequestedEvent = 62180,
     RenderWaitEvent,

@@ -21,7 +21,6 @@ vtkStandardNewMacro(vtkMRMLFenestraOpeningDisplayableManager);
 namespace {
 using Manager = vtkMRMLFenestraOpeningDisplayableManager;
 using Node = vtkMRMLFenestraRenderNode;
-
 } // namespace
 
 Manager::vtkMRMLFenestraOpeningDisplayableManager() = default;
@@ -37,7 +36,7 @@ void Manager::PrintSelf(ostream& os, vtkIndent indent) {
 }
 
 bool Manager::IsOpened() {
-  return this->Pass->GetVolume() != nullptr && this->Opening && this->Opening->HasFocus();
+  return this->Pass->GetVolume() != nullptr;
 }
 
 double Manager::GetSeconds() {
