@@ -12,49 +12,16 @@
 #include <vtkWeakPointer.h>
 #include <vtkWindowToImageFilter.h>
 
-#include <gtest/gtest.h>
-
-#include <GL/gl.h>
-
 #include <algorithm>
-#include <cstdlib>
-#include <cstring>
+#include <iostream>
 #include <string>
 
 namespace opening {
 namespace {
 
-/// Empty: there is OpenGL. VTK ends the process where X is missing.
-std::string findObstacle() {
-  const vtkNew<vtkRenderWindow> window;
-  const bool isX = std::strstr(window->GetClassName(), "XOpenGL") != nullptr;
-  if (isX && !std::getenv("DISPLAY"))
-    return "no X display";
-  window->SetOffScreenRendering(1);
-  return window->SupportsOpenGL() ? "" : "no OpenGL context";
-}
-
-class OpeningPass : public ::testing::Test {
+class OpeningPass : public views::ViewTest {
 protected:
-  void SetUp() override {
-    static const std::string obstacle = findObstacle();
-    if (!obstacle.empty())
-      GTEST_SKIP() << obstacle;
-    vtkOutputWindow::SetInstance(this->messages);
-    this->window->SetOffScreenRendering(1);
-    this->window->SetMultiSamples(0);
-    this->window->SetSize(240, 180);
-  }
-  void TearDown() override {
-    vtkOutputWindow::SetInstance(nullptr);
-    EXPECT_EQ(this->messages->Count, 0);
-  }
-
-  Image render(const View& view) {
-    Image image = renderImage(this->window, view.renderer);
-    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
-    return image;
-  }
+  Image render(const View& view) { return ViewTest::render(view.renderer); }
   std::vector<float> renderDepths(const View& view) { return toDepths(this->render(view)); }
 
   /// Compares the depths at which a view's rays start with those of LiveSurface.
@@ -68,8 +35,6 @@ protected:
   }
 
   const Subject subject;
-  const vtkNew<MessageCounter> messages;
-  const vtkNew<vtkRenderWindow> window;
   bool isCutaway = false;
 };
 

@@ -8,16 +8,13 @@
 #include <vtkPolyData.h>
 #include <vtkShaderProgram.h>
 #include <vtkSphereSource.h>
-#include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <limits>
 
 namespace opening {
 
-vtkStandardNewMacro(MessageCounter);
 vtkStandardNewMacro(DepthPass);
 
 namespace {
@@ -118,11 +115,6 @@ fenestra::core::LiveCamera toLiveCamera(vtkRenderer* renderer) {
 
 } // namespace
 
-void MessageCounter::DisplayText(const char* text) {
-  ++this->Count;
-  std::cerr << text << '\n';
-}
-
 bool DepthPass::PreReplaceShaderValues(std::string& vertexShader, std::string& geometryShader,
                                        std::string& fragmentShader, vtkAbstractMapper* mapper,
                                        vtkProp* prop) {
@@ -187,20 +179,6 @@ void View::look(const Subject& subject, const std::array<double, 3>& direction, 
   camera->SetParallelScale(55.0);
   camera->SetParallelProjection(isPerspective ? 0 : 1);
   camera->SetClippingRange(1.0, 700.0);
-}
-
-Image renderImage(vtkRenderWindow* window, vtkRenderer* renderer) {
-  window->Render();
-  int width = 0, height = 0, left = 0, bottom = 0;
-  renderer->GetTiledSizeAndOrigin(&width, &height, &left, &bottom);
-  vtkNew<vtkUnsignedCharArray> pixels;
-  window->GetPixelData(left, bottom, left + width - 1, bottom + height - 1, 0, pixels);
-  Image image{width, height, {}};
-  for (int row = height - 1; row >= 0; --row) {
-    const unsigned char* first = pixels->GetPointer(3 * static_cast<vtkIdType>(row) * width);
-    image.colors.insert(image.colors.end(), first, first + 3 * static_cast<std::ptrdiff_t>(width));
-  }
-  return image;
 }
 
 std::vector<float> toDepths(const Image& image) {

@@ -1,13 +1,13 @@
 #pragma once
 // Views of a volume that a pass opens, and the depths at which their rays start.
 
+#include "ViewTest.h"
 #include "vtkFenestraOpeningPass.h"
 
 #include <vtkImageData.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 #include <vtkOpenGLGPUVolumeRayCastMapper.h>
-#include <vtkOutputWindow.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkVolume.h>
@@ -20,19 +20,12 @@
 
 namespace opening {
 
+using views::Image;
+using views::renderImage;
+
 using fenestra::core::BoxCorners;
 using fenestra::core::ClosedSurface;
 using fenestra::core::LiveSurface;
-
-/// Counts messages of VTK, and prints them.
-class MessageCounter : public vtkOutputWindow {
-public:
-  static MessageCounter* New();
-  vtkTypeMacro(MessageCounter, vtkOutputWindow);
-  void DisplayText(const char* text) override;
-
-  int Count = 0;
-};
 
 /// Pass whose image is the axial depth at which each ray starts, before jittering.
 class DepthPass : public vtkFenestraOpeningPass {
@@ -68,13 +61,6 @@ struct View {
   vtkNew<vtkVolume> volume;
 };
 
-struct Image {
-  int width, height;
-  std::vector<unsigned char> colors; ///< red, green and blue, the upper row first
-};
-
-/// Renders, and reads a renderer's part of the window.
-Image renderImage(vtkRenderWindow* window, vtkRenderer* renderer);
 /// Depths in an image of DepthPass, mm; infinity: no ray.
 std::vector<float> toDepths(const Image& image);
 
