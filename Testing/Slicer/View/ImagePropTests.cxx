@@ -4,9 +4,13 @@
 
 #include <vtkCamera.h>
 #include <vtkCellPicker.h>
+#include <vtkDataArray.h>
 #include <vtkImageData.h>
+#include <vtkPointData.h>
+#include <vtkPropPicker.h>
 #include <vtkProperty.h>
 #include <vtkWindowToImageFilter.h>
+#include <vtkWorldPointPicker.h>
 
 #include <algorithm>
 #include <chrono>
@@ -14,44 +18,9 @@
 #include <iostream>
 #include <iterator>
 #include <limits>
-#include <utility>
 
 namespace image {
 namespace {
-
-const Rgba background{51.0, 102.0, 204.0, 255.0};
-/// Of translucent colors, which VTK blends in several steps with 8 and 16 bits.
-constexpr double rounding = 2.0;
-
-class ImageProp : public views::ViewTest {
-protected:
-  /// Shows an image of the view as it is now. It is of the view's size, or a part of it.
-  Layer show(View& view, Alpha alpha, int part = 1) {
-    this->render(view.renderer); // gives the view its size
-    int width = 0, height = 0;
-    view.renderer->GetTiledSize(&width, &height);
-    const auto traced = trace(view.renderer, width / part, height / part, alpha);
-    view.prop->SetImage(traced);
-    return enlarge(*traced, width, height);
-  }
-  /// Frame and depths of a model without the image.
-  std::pair<Image, std::vector<double>> renderModel(View& view) {
-    view.prop->VisibilityOff();
-    Image frame = this->render(view.renderer);
-    view.prop->VisibilityOn();
-    return {frame, readDepths(this->window, view.renderer)};
-  }
-};
-
-/// Colors of an image over one color.
-std::vector<Rgba> compose(const Layer& layer, const Rgba& behind, double opacity = 1.0) {
-  std::vector<Rgba> colors;
-  for (Rgba color : layer.colors) {
-    color[3] *= opacity;
-    colors.push_back(blend(color, behind));
-  }
-  return colors;
-}
 
 /// Largest difference of depths, mm, over pixels where both have one. Fails where one has none.
 double compareDepths(const std::vector<double>& found, const std::vector<double>& expected) {
@@ -320,6 +289,27 @@ TEST_F(ImageProp, PickersFindTheSurface) {
     }
 }
 
+TEST_F(ImageProp, PickersByRenderingFindTheSurface) {
+  View view(this->window);
+  const vtkNew<vtkWorldPointPicker> depth;
+  const vtkNew<vtkPropPicker> prop;
+  for (const bool isParallel : {false, true}) {
+    view.look({20.0, -300.0, 60.0}, isParallel);
+    this->show(view, Alpha::Hard);
+    const std::vector<unsigned char> colors = this->render(view.renderer).colors;
+    for (int x = 40; x < 200; x += 20) {
+      const bool isSphere = std::isfinite(intersect(view.renderer, 240, 180, x, 89));
+      depth->Pick(x, 90.0, 0.0, view.renderer);
+      Point position;
+      depth->GetPickPosition(position.data());
+      EXPECT_EQ(getDistance(position) < 0.6, isSphere) << x;
+      prop->Pick(x, 90.0, 0.0, view.renderer);
+      EXPECT_EQ(prop->GetActor() == view.prop.Get(), isSphere) << x;
+    }
+    EXPECT_EQ(this->render(view.renderer).colors, colors);
+  }
+}
+
 TEST_F(ImageProp, BoundsContainTheSurface) {
   View view(this->window);
   double bounds[6];
@@ -342,28 +332,6 @@ TEST_F(ImageProp, BoundsContainTheSurface) {
   EXPECT_GT(bounds[0], bounds[1]) << "no image";
 }
 
-TEST_F(ImageProp, RemovalLeavesTheFrameAsBefore) {
-  for (const bool isPeeled : {false, true}) {
-    const vtkNew<vtkFenestraImageProp> kept;
-    View view(this->window);
-    view.renderer->SetUseDepthPeeling(isPeeled);
-    const Model half({35.0, -20.0, 10.0}, 20.0), translucent({-10.0, -40.0, -10.0}, 15.0, 0.5);
-    view.renderer->AddActor(half.actor);
-    view.renderer->AddActor(translucent.actor);
-    const std::vector<unsigned char> before = this->render(view.renderer).colors;
-    this->show(view, Alpha::Soft);
-    EXPECT_NE(this->render(view.renderer).colors, before);
-    view.prop->SetImage(nullptr);
-    EXPECT_EQ(this->render(view.renderer).colors, before);
-    this->show(view, Alpha::Soft);
-    EXPECT_NE(this->render(view.renderer).colors, before);
-    view.prop->SetRenderer(nullptr);
-    EXPECT_EQ(this->render(view.renderer).colors, before);
-    EXPECT_EQ(view.prop->GetReferenceCount(), 1);
-    this->window->RemoveRenderer(view.renderer);
-  }
-}
-
 TEST_F(ImageProp, ScreenshotsEqualTheFrame) {
   for (const bool isParallel : {false, true}) {
     View view(this->window);
@@ -382,6 +350,10 @@ TEST_F(ImageProp, ScreenshotsEqualTheFrame) {
       found.colors.insert(found.colors.end(), first, first + 3 * 240);
     }
     EXPECT_EQ(found.colors, frame.colors);
+    filter->SetScale(2); // each tile has a camera of its own
+    filter->Update();
+    for (vtkIdType i = 0; i < filter->GetOutput()->GetNumberOfPoints(); i += 7)
+      EXPECT_EQ(filter->GetOutput()->GetPointData()->GetScalars()->GetComponent(i, 1), 102.0);
     EXPECT_GT(countDifferent(found, std::vector<Rgba>(240 * 180, background), 0.0), 10000);
     this->window->RemoveRenderer(view.renderer);
   }

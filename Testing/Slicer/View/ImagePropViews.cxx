@@ -214,6 +214,15 @@ Rgba blend(const Rgba& front, const Rgba& behind) {
   return color;
 }
 
+std::vector<Rgba> compose(const Layer& layer, const Rgba& behind, double opacity) {
+  std::vector<Rgba> colors;
+  for (Rgba color : layer.colors) {
+    color[3] *= opacity;
+    colors.push_back(blend(color, behind));
+  }
+  return colors;
+}
+
 int countDifferent(const Image& found, const std::vector<Rgba>& expected, double tolerance) {
   int different = 0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -224,6 +233,22 @@ int countDifferent(const Image& found, const std::vector<Rgba>& expected, double
     different += largest > tolerance ? 1 : 0;
   }
   return different;
+}
+
+Layer ImageProp::show(View& view, Alpha alpha, int part) {
+  this->render(view.renderer); // gives the view its size
+  int width = 0, height = 0;
+  view.renderer->GetTiledSize(&width, &height);
+  const auto traced = trace(view.renderer, width / part, height / part, alpha);
+  view.prop->SetImage(traced);
+  return enlarge(*traced, width, height);
+}
+
+std::pair<Image, std::vector<double>> ImageProp::renderModel(View& view) {
+  view.prop->VisibilityOff();
+  Image frame = this->render(view.renderer);
+  view.prop->VisibilityOn();
+  return {frame, readDepths(this->window, view.renderer)};
 }
 
 } // namespace image

@@ -11,6 +11,7 @@
 #include <array>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace image {
@@ -23,6 +24,10 @@ using Rgba = std::array<double, 4>;
 
 constexpr Point center{5.0, 3.0, -4.0}; ///< of the sphere in the images, mm
 constexpr double radius = 40.0;         ///< mm
+
+constexpr Rgba background{51.0, 102.0, 204.0, 255.0};
+/// Of translucent colors, which VTK blends in several steps with 8 and 16 bits.
+constexpr double rounding = 2.0;
 
 /// Counts the shader texts that VTK composes for a prop.
 class BuildCounter : public vtkOpenGLRenderPass {
@@ -88,7 +93,18 @@ Layer enlarge(const FenestraViewImage& image, int width, int height);
 Rgba getColor(const Image& image, std::size_t pixel);
 Rgba blend(const Rgba& front, const Rgba& behind);
 
+/// Colors of an image over one color.
+std::vector<Rgba> compose(const Layer& layer, const Rgba& behind, double opacity = 1.0);
+
 /// Pixels whose colors differ by more than a tolerance.
 int countDifferent(const Image& found, const std::vector<Rgba>& expected, double tolerance);
+
+class ImageProp : public views::ViewTest {
+protected:
+  /// Shows an image of the view as it is now. It is of the view's size, or a part of it.
+  Layer show(View& view, Alpha alpha, int part = 1);
+  /// Frame and depths without the image.
+  std::pair<Image, std::vector<double>> renderModel(View& view);
+};
 
 } // namespace image
