@@ -182,8 +182,7 @@ void vtkFenestraImageProp::ReleaseGraphicsResources(vtkWindow* window) {
 }
 
 void vtkFenestraImageProp::Upload(vtkOpenGLRenderWindow* window) {
-  if (this->IsUploaded && this->ColorTexture->GetContext() == window &&
-      this->ColorTexture->GetHandle() != 0)
+  if (this->IsUploaded) // a window that is closed or left releases the textures
     return;
   const FenestraViewImage& image = *this->Image;
   const auto width = static_cast<unsigned int>(image.width);

@@ -40,7 +40,8 @@ public:
   void SetRenderer(vtkRenderer* renderer);
   vtkRenderer* GetRenderer();
 
-  /// Shows an image of the renderer's camera as it is now. Null: none.
+  /// Shows an image of the renderer's camera as it is now. Null: none. The clipping range is left
+  /// as it is: callers reset it, as with any new prop. Depths beyond it are drawn at its ends.
   void SetImage(std::shared_ptr<const FenestraViewImage> image);
   /// Shows an image of a camera as it was, for images that come later than their camera.
   void SetImage(std::shared_ptr<const FenestraViewImage> image, const FenestraViewCamera& camera);

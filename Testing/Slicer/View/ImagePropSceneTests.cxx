@@ -3,9 +3,16 @@
 #include "ImagePropViews.h"
 #include "OpeningPassViews.h"
 
+#include <vtkCamera.h>
+#include <vtkCellPicker.h>
+#include <vtkMath.h>
+#include <vtkOpenGLRenderWindow.h>
+#include <vtkOpenGLState.h>
 #include <vtkSmartPointer.h>
+#include <vtkTextureUnitManager.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace image {
 namespace {
@@ -84,7 +91,12 @@ TEST_F(ImageProp, RemovalLeavesTheFrameAsBefore) {
     EXPECT_EQ(this->render(view.renderer).colors, before);
     this->show(view, Alpha::Soft);
     EXPECT_NE(this->render(view.renderer).colors, before);
+    vtkTextureUnitManager* units =
+        vtkOpenGLRenderWindow::SafeDownCast(this->window)->GetState()->GetTextureUnitManager();
+    for (int unit = 0; unit < units->GetNumberOfTextureUnits(); ++unit)
+      EXPECT_FALSE(units->IsAllocated(unit)) << "texture unit " << unit;
     view.prop->SetRenderer(nullptr);
+    EXPECT_EQ(view.prop->GetRenderer(), nullptr);
     EXPECT_EQ(this->render(view.renderer).colors, before);
     EXPECT_EQ(view.prop->GetReferenceCount(), 1);
     this->window->RemoveRenderer(view.renderer);
@@ -120,6 +132,42 @@ TEST_F(ImageProp, ReferencesEndInAnyOrder) {
   this->render(kept); // the prop of the view is the renderer's
   EXPECT_EQ(kept->GetActors()->GetNumberOfItems(), 1);
   this->window->RemoveRenderer(kept);
+
+  View view(this->window);
+  this->show(view, Alpha::Soft);
+  this->render(view.renderer);
+  this->window->RemoveRenderer(view.renderer);
+  EXPECT_FALSE(view.prop->GetVisibility()) << "renderer without a window";
+  view.prop->SetRenderer(nullptr);
+}
+
+TEST_F(ImageProp, PickersFindNothingWhereDepthsJump) {
+  View view(this->window);
+  this->render(view.renderer);
+  const auto traced = makeHalf(240, 180, 250.0F);
+  for (float& depth : traced->depth)
+    depth = depth > 250.0F ? 350.0F : depth;
+  view.prop->SetImage(traced);
+  this->render(view.renderer);
+  const vtkNew<vtkCellPicker> picker;
+  double axis[3], position[3];
+  view.renderer->GetActiveCamera()->GetDirectionOfProjection(axis);
+  view.renderer->GetActiveCamera()->GetPosition(position);
+  int found = 0, gaps = 0;
+  for (int x = 100; x < 140; ++x) {
+    if (!picker->Pick(x, 90.0, 0.0, view.renderer)) {
+      ++gaps;
+      continue;
+    }
+    ++found;
+    double point[3];
+    picker->GetPickPosition(point);
+    vtkMath::Subtract(point, position, point);
+    const double depth = vtkMath::Dot(point, axis);
+    EXPECT_LT(std::min(std::abs(depth - 250.0), std::abs(depth - 350.0)), 0.01) << x;
+  }
+  EXPECT_GT(found, 30);
+  EXPECT_GT(gaps, 0);
 }
 
 TEST_F(ImageProp, WindowsThatWereClosedShowTheImageAgain) {
