@@ -4,18 +4,18 @@
 
 namespace {
 
-constexpr char vertexDeclarations[] = R"GLSL(
+constexpr char imageVertexDeclarations[] = R"GLSL(
 out vec2 fenestra_at;
 //VTK::PositionVC::Dec)GLSL";
 
 // After VTK's own projection.
-constexpr char position[] = R"GLSL(
+constexpr char imagePosition[] = R"GLSL(
 //VTK::PositionVC::Impl
   gl_Position = vec4(vertexMC.xy, 0.0, 1.0);
   fenestra_at = vec2(0.5 + 0.5 * vertexMC.x, 0.5 - 0.5 * vertexMC.y);
 )GLSL";
 
-constexpr char declarations[] = R"GLSL(
+constexpr char imageDeclarations[] = R"GLSL(
 in vec2 fenestra_at; // in the view, 0 to 1 from the upper left corner
 uniform sampler2D fenestra_color;
 uniform sampler2D fenestra_depth;
@@ -75,10 +75,6 @@ vec4 fenestra_sample(out float depth)
 
 float fenestra_toWindow(float depth)
 {
-  if (depth >= 1e30)
-  {
-    return fenestra_farthest;
-  }
   float mm = fenestra_isParallel != 0 ? depth : 1.0 / depth;
   return clamp(fenestra_depthTerms.x + fenestra_depthTerms.y * mm, 0.0, fenestra_farthest);
 }
@@ -86,7 +82,7 @@ float fenestra_toWindow(float depth)
 //VTK::Light::Dec)GLSL";
 
 // Without VTK's tag, so that no other depth is written. Before depth peeling looks at the depth.
-constexpr char depth[] = R"GLSL(
+constexpr char imageDepth[] = R"GLSL(
   float fenestra_mm;
   vec4 fenestra_rgba = fenestra_sample(fenestra_mm);
   bool fenestra_isOpaque = fenestra_rgba.a > 1.0 - 0.5 / 255.0 && fenestra_opacity >= 1.0;
@@ -100,16 +96,17 @@ constexpr char depth[] = R"GLSL(
 )GLSL";
 
 // Without VTK's tag: the image is lit.
-constexpr char color[] = R"GLSL(
+constexpr char imageColor[] = R"GLSL(
   gl_FragData[0] = fenestra_rgba;
 )GLSL";
 
 } // namespace
 
 void FenestraImageShader::AddReplacements(vtkShaderProperty* shader) {
-  shader->AddVertexShaderReplacement("//VTK::PositionVC::Dec", true, vertexDeclarations, false);
-  shader->AddVertexShaderReplacement("//VTK::PositionVC::Impl", true, position, false);
-  shader->AddFragmentShaderReplacement("//VTK::Light::Dec", true, declarations, false);
-  shader->AddFragmentShaderReplacement("//VTK::Depth::Impl", true, depth, false);
-  shader->AddFragmentShaderReplacement("//VTK::Light::Impl", true, color, false);
+  shader->AddVertexShaderReplacement("//VTK::PositionVC::Dec", true, imageVertexDeclarations,
+                                     false);
+  shader->AddVertexShaderReplacement("//VTK::PositionVC::Impl", true, imagePosition, false);
+  shader->AddFragmentShaderReplacement("//VTK::Light::Dec", true, imageDeclarations, false);
+  shader->AddFragmentShaderReplacement("//VTK::Depth::Impl", true, imageDepth, false);
+  shader->AddFragmentShaderReplacement("//VTK::Light::Impl", true, imageColor, false);
 }

@@ -125,6 +125,31 @@ TEST_F(ImageProp, TranslucentModelsAreComposedByDepthPeeling) {
     }
 }
 
+TEST_F(ImageProp, PixelsWithoutDepthAreBehindAllModels) {
+  View view(this->window);
+  const Model model({35.0, 20.0, 10.0}, 30.0);
+  view.renderer->AddActor(model.actor);
+  for (const bool isParallel : {false, true})
+    for (const bool isPeeled : {false, true}) {
+      view.renderer->SetUseDepthPeeling(isPeeled);
+      view.look({20.0, -300.0, 60.0}, isParallel);
+      this->render(view.renderer);
+      const auto traced = trace(view.renderer, 240, 180, Alpha::Hard);
+      for (std::size_t i = 0; i < traced->depth.size(); ++i) {
+        traced->depth[i] = FenestraViewImage::noDepth;
+        traced->rgba[4 * i + 3] = i % 2 ? 255 : 128;
+      }
+      view.prop->SetImage(traced);
+      const auto [frame, depths] = this->renderModel(view);
+      std::vector<Rgba> expected = compose(enlarge(*traced, 240, 180), background);
+      for (std::size_t i = 0; i < depths.size(); ++i)
+        if (std::isfinite(depths[i]))
+          expected[i] = getColor(frame, i);
+      EXPECT_EQ(countDifferent(this->render(view.renderer), expected, rounding), 0);
+      EXPECT_EQ(view.prop->GetBounds(), nullptr);
+    }
+}
+
 TEST_F(ImageProp, SmallerImagesAreEnlarged) {
   View view(this->window);
   for (const bool isParallel : {false, true})
