@@ -37,7 +37,7 @@ Segmentation makeLabels(const Grid& grid, const Vec3& native, const Shape& shape
 }
 
 Mask smoothLabels(const Segmentation& labels) {
-  return labels.makeMask(labels.segments(), labels.grid(), {.smoothing = std::nullopt});
+  return labels.makeFocusMask({"organ"}, labels.grid(), {.smoothing = std::nullopt});
 }
 
 /// Trilinear indicator at a point, world mm, 0 to 1.

@@ -350,11 +350,13 @@ Mask Segmentation::makeFocusMask(const std::vector<std::string>& selectors, cons
   std::vector<SegmentInfo> chosen;
   for (const std::string& selector : selectors)
     chosen.push_back(m_segments[find(selector)]);
-  Mask mask = makeMask(chosen, volume, shaping);
+  const Mask labels = makeLabels(chosen, volume, shaping);
+  Mask mask = smoothLabels(labels, chosen, volume, shaping);
   if (mask.count == 0)
     throw inputError(ErrorCode::emptyShapedFocus, m_source,
                      "margin and smoothing leave nothing of the focus (", formatSegments(chosen),
                      ")");
+  mask.volumeChange = measureVolumeChange(labels, mask, volume);
   return mask;
 }
 
@@ -400,27 +402,34 @@ Mask Segmentation::fillMask(const std::vector<SegmentInfo>& chosen, const Grid& 
   return all;
 }
 
-Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& volume,
-                            const MaskShaping& shaping) const {
-  if (shaping == MaskShaping())
-    return fillMask(chosen, volume, false);
-  const auto shapeMask = [&](const std::vector<SegmentInfo>& segments, double margin) {
+Mask Segmentation::makeLabels(const std::vector<SegmentInfo>& chosen, const Grid& volume,
+                              const MaskShaping& shaping) const {
+  const auto applyOne = [&](const std::vector<SegmentInfo>& segments, double margin) {
     return applyMargin(fillMask(segments, volume, shaping.smoothing != 0.0), margin, volume);
   };
   std::vector<Mask> masks;
   if (shaping.margins.size() <= 1) // unite first: no gaps between adjacent segments
-    masks.push_back(shapeMask(chosen, shaping.margins.empty() ? 0.0 : shaping.margins[0]));
+    masks.push_back(applyOne(chosen, shaping.margins.empty() ? 0.0 : shaping.margins[0]));
   else
     for (std::size_t i = 0; i < chosen.size(); ++i)
-      masks.push_back(shapeMask({chosen[i]}, shaping.margins[i]));
-  const Mask all = uniteMasks(alignMasks(std::move(masks), volume));
+      masks.push_back(applyOne({chosen[i]}, shaping.margins[i]));
+  return uniteMasks(alignMasks(std::move(masks), volume));
+}
+
+Mask Segmentation::smoothLabels(const Mask& labels, const std::vector<SegmentInfo>& chosen,
+                                const Grid& volume, const MaskShaping& shaping) const {
+  if (shaping.smoothing)
+    return smoothMask(labels, *shaping.smoothing, volume);
   double stairs = 0.0; // mm
   for (const SegmentInfo& segment : chosen)
     stairs = std::max(stairs, findStairWidth(findNativeSpacing(m_maps[findMap(segment.layer)])));
-  Mask smooth = shaping.smoothing ? smoothMask(all, *shaping.smoothing, volume)
-                                  : smoothMaskAuto(all, stairs, volume);
-  smooth.volumeChange = measureVolumeChange(all, smooth, volume);
-  return smooth;
+  return smoothMaskAuto(labels, stairs, volume);
+}
+
+Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& volume,
+                            const MaskShaping& shaping) const {
+  Mask labels = makeLabels(chosen, volume, shaping);
+  return shaping.smoothing == 0.0 ? labels : smoothLabels(labels, chosen, volume, shaping);
 }
 
 } // namespace fenestra::core

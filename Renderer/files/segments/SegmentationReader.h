@@ -111,14 +111,15 @@ public:
     return findSegment(m_segments, selector, m_source);
   }
 
-  /// Union of the selected segments. Throws Error (input) as find and makeMask do, and if `shaping`
-  /// leaves no voxel.
+  /// Union of the selected segments, with Mask::volumeChange. Throws Error (input) as find and
+  /// makeMask do, and if `shaping` leaves no voxel.
   Mask makeFocusMask(const std::vector<std::string>& selectors, const Grid& volume,
                      const MaskShaping& shaping = {}) const;
   /// Union of some of segments(), cropped. Where a face of a label map coincides with a face of
   /// `volume` (parallel, within half a voxel), the mask continues beyond it, as Mask.h describes.
   /// Segments of several lattices are resampled on the finest one, or on that of `volume` if it is
-  /// much coarser. Throws Error (input) if the segments have no voxel.
+  /// much coarser. Does not measure Mask::volumeChange.
+  /// Throws Error (input) if the segments have no voxel.
   Mask makeMask(const std::vector<SegmentInfo>& chosen, const Grid& volume,
                 const MaskShaping& shaping = {}) const;
 
@@ -127,6 +128,11 @@ private:
   std::size_t findMap(std::size_t layer) const;
   /// Union of segments, interpolated between slices if `isShaped`.
   Mask fillMask(const std::vector<SegmentInfo>& chosen, const Grid& volume, bool isShaped) const;
+  /// Union of segments with their margins, before smoothing.
+  Mask makeLabels(const std::vector<SegmentInfo>& chosen, const Grid& volume,
+                  const MaskShaping& shaping) const;
+  Mask smoothLabels(const Mask& labels, const std::vector<SegmentInfo>& chosen, const Grid& volume,
+                    const MaskShaping& shaping) const;
   static Vec3 findNativeSpacing(const LabelMap& map) {
     return map.nativeVoxels.cwiseProduct(map.grid.spacing());
   }
