@@ -1,14 +1,15 @@
 // Smoothing of label maps without a choice by the user (smoothMaskAuto).
 
+#include "base/LargePages.h"
 #include "model/masks/EqualVolume.h"
 #include "model/masks/GaussianBlur.h"
 #include "model/masks/MaskShaping.h"
+#include "model/masks/Rows.h"
 #include "model/masks/ThinParts.h"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace fenestra::core {
 namespace {
@@ -16,18 +17,32 @@ namespace {
 /// Radius, in native edges, of the ball that does not fit into thin parts; and their part of sigma.
 constexpr double thinRadius = 2.0, thinSigma = 0.4;
 
+/// Blurs a set of voxels, 0 or 1 each.
+LargeArray<std::uint8_t> blurVoxels(std::vector<std::uint8_t> voxels, const Grid& grid,
+                                    const Vec3& sigmas) {
+  Mask mask;
+  mask.grid = grid;
+  mask.voxels = std::move(voxels);
+  LargeArray<std::uint8_t> result(mask.voxels.size());
+  blurMask(mask, Size3::Zero(), grid.size, sigmas, result.data());
+  return result;
+}
+
 /// Smooths `places`, thin parts and narrow gaps, less.
-void sharpen(const Mask& labels, const Size3& first, const std::vector<std::uint8_t>& places,
+void sharpen(const Mask& labels, const Size3& first, std::vector<std::uint8_t> places,
              Mask& smooth) {
   const Size3& size = smooth.grid.size;
   const Vec3 sigmas = thinSigma * smooth.smoothing * smooth.grid.spacing().cwiseInverse();
-  Mask thin;
-  thin.grid = smooth.grid;
-  thin.voxels = places;
-  const std::vector<std::uint8_t> sharp = blurMask(labels, first, size, sigmas);
-  const std::vector<std::uint8_t> weights = blurMask(thin, Size3::Zero(), size, sigmas);
-  tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
-    for (std::size_t i = linearIndex({0, 0, z}, size); i < linearIndex({0, 0, z + 1}, size); ++i) {
+  const LargeArray<std::uint8_t> weights = blurVoxels(std::move(places), smooth.grid, sigmas);
+  LargeArray<std::uint8_t> sharp(smooth.voxels.size());
+  blurMask(labels, first, size, sigmas, sharp.data());
+  forEachRow(size, [&](std::int64_t, std::int64_t, std::size_t row) {
+    const auto end = row + static_cast<std::size_t>(size.x());
+    if (std::all_of(weights.begin() + static_cast<std::ptrdiff_t>(row),
+                    weights.begin() + static_cast<std::ptrdiff_t>(end),
+                    [](std::uint8_t weight) { return weight == 0; }))
+      return;
+    for (std::size_t i = row; i < end; ++i) {
       const int more = weights[i] * (sharp[i] - smooth.voxels[i]);
       smooth.voxels[i] =
           static_cast<std::uint8_t>(smooth.voxels[i] + (more + (more < 0 ? -127 : 127)) / 255);
@@ -69,9 +84,9 @@ Mask smoothMaskAuto(const Mask& mask, double native, const Grid& volume) {
     return mask; // extremely anisotropic voxels
   Mask result = smoothMask(mask, sigma, volume);
   const Size3 first = findOffset(result, mask);
-  const ThinParts thin = findThinParts(mask, first, result.grid.size, thinRadius * native);
+  ThinParts thin = findThinParts(mask, first, result.grid.size, thinRadius * native);
   if (!thin.places.empty())
-    sharpen(mask, first, thin.places, result);
+    sharpen(mask, first, std::move(thin.places), result);
   equalizeVolume(mask, volume, result);
   if (restoreErased(thin.inside, result)) { // with more volume
     equalizeVolume(mask, volume, result);

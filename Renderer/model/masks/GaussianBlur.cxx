@@ -1,11 +1,60 @@
 #include "model/masks/GaussianBlur.h"
 
+#include "base/SimdTargets.h"
+
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <memory>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "model/masks/GaussianBlur.cxx"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// After foreach_target.h:
+#include "base/Simd-inl.h"
+
+#ifndef FENESTRA_BLUR_TAPS
+#define FENESTRA_BLUR_TAPS
 namespace fenestra::core {
+
+/// Rows to add, with their weights, in order. Rows and sums have room for complete SIMD vectors.
+struct BlurTaps {
+  static constexpr std::int64_t padding = 16; ///< floats; at least the lanes of a vector
+
+  std::vector<const float*> rows;
+  std::vector<float> weights;
+};
+
+} // namespace fenestra::core
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::core::HWY_NAMESPACE {
+namespace {
+
+static_assert(laneCount <= BlurTaps::padding);
+
+/// Writes the weighted sums of `count` floats.
+void addTaps(const BlurTaps& taps, std::int64_t count, float* to) {
+  for (std::int64_t x = 0; x < count; x += static_cast<std::int64_t>(laneCount)) {
+    Float sum(0.0F);
+    for (std::size_t k = 0; k < taps.rows.size(); ++k)
+      sum = sum + Float(taps.weights[k]) * load(taps.rows[k] + x);
+    store(sum, to + x);
+  }
+}
+
+} // namespace
+} // namespace fenestra::core::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fenestra::core {
+
+HWY_EXPORT(addTaps);
+
 namespace {
 
 /// Kernel weights from the center outward, w[0] + 2 (w[1] + ...) = 1.
@@ -23,19 +72,19 @@ std::vector<float> makeHalfKernel(double sigma) {
   return kernel;
 }
 
-/// Adds weight * from to a row.
-void addRow(float weight, const float* from, std::int64_t count, float* to) {
-  for (std::int64_t x = 0; x < count; ++x)
-    to[x] += weight * from[x];
-}
-
-/// A slice of floats. Rows of zeros are marked as empty and not written.
+/// A slice of floats. Rows of zeros are marked as empty and not written: their memory is not used.
 struct Plane {
-  std::vector<float> values;
+  std::int64_t stride; ///< between rows
+  std::unique_ptr<float[]> values;
   std::vector<char> isEmpty; ///< per row
 
   Plane(std::int64_t columns, std::int64_t rows)
-      : values(static_cast<std::size_t>(columns * rows)), isEmpty(static_cast<std::size_t>(rows)) {}
+      : stride((columns + BlurTaps::padding - 1) / BlurTaps::padding * BlurTaps::padding),
+        values(new float[static_cast<std::size_t>(stride * rows)]),
+        isEmpty(static_cast<std::size_t>(rows)) {}
+
+  float* row(std::int64_t y) { return values.get() + stride * y; }
+  const float* row(std::int64_t y) const { return values.get() + stride * y; }
 };
 
 class Blur {
@@ -51,7 +100,9 @@ public:
   /// holds the neighboring slices that each of them needs.
   void blurSlices(std::int64_t begin, std::int64_t end, std::uint8_t* to) const {
     const std::int64_t radius = kernelRadius(2), ringSize = 2 * radius + 1;
-    std::vector<Plane> ring(static_cast<std::size_t>(ringSize), Plane(m_size.x(), m_size.y()));
+    std::vector<Plane> ring;
+    for (std::int64_t i = 0; i < ringSize; ++i)
+      ring.emplace_back(m_size.x(), m_size.y());
     Plane raw(m_size.x(), m_size.y());
     const auto at = [&](std::int64_t z) -> Plane& {
       return ring[static_cast<std::size_t>((z + ringSize) % ringSize)];
@@ -79,14 +130,12 @@ private:
   void blurSlice(std::int64_t z, Plane& raw, Plane& to) const {
     for (std::int64_t y = 0; y < m_size.y(); ++y)
       blurAlongRow(z, y, raw);
-    for (std::int64_t y = 0; y < m_size.y(); ++y) {
-      char& isEmpty = to.isEmpty[static_cast<std::size_t>(y)] = 1;
-      float* const row = to.values.data() + y * m_size.x();
-      forEachTap(1, [&](std::int64_t k, float weight) {
-        const std::int64_t other = std::clamp<std::int64_t>(y + k, 0, m_size.y() - 1);
-        addTo(row, isEmpty, raw, other, weight);
-      });
-    }
+    for (std::int64_t y = 0; y < m_size.y(); ++y)
+      to.isEmpty[static_cast<std::size_t>(y)] =
+          !addRows(1, to.row(y), [&](std::int64_t k) -> const float* {
+            const std::int64_t other = std::clamp<std::int64_t>(y + k, 0, m_size.y() - 1);
+            return findRow(raw, other);
+          });
   }
 
   void blurAlongRow(std::int64_t z, std::int64_t y, Plane& to) const {
@@ -97,44 +146,43 @@ private:
     isEmpty = std::all_of(from, from + columns, [](std::uint8_t value) { return value == 0; });
     if (isEmpty)
       return;
-    std::vector<float> padded(static_cast<std::size_t>(m_size.x() + 2 * radius));
+    std::vector<float> padded(
+        static_cast<std::size_t>(m_size.x() + 2 * radius + BlurTaps::padding));
     const float perMaxValue = 1.0F / static_cast<float>(m_mask.maxValue);
     for (std::int64_t x = 0; x < m_size.x() + 2 * radius; ++x)
       padded[static_cast<std::size_t>(x)] =
           perMaxValue * static_cast<float>(from[clampToMask(0, x - radius)]);
-    float* const row = to.values.data() + y * m_size.x();
-    std::fill_n(row, m_size.x(), 0.0F);
-    forEachTap(0, [&](std::int64_t k, float weight) {
-      addRow(weight, padded.data() + radius + k, m_size.x(), row);
-    });
+    addRows(0, to.row(y), [&](std::int64_t k) { return padded.data() + radius + k; });
   }
 
-  /// Calls visit(offset, weight) for each sample of the kernel of an axis.
-  template <typename Visit>
-  void forEachTap(std::size_t axis, const Visit& visit) const {
+  /// A row of a plane; null if it is empty.
+  static const float* findRow(const Plane& plane, std::int64_t y) {
+    return plane.isEmpty[static_cast<std::size_t>(y)] ? nullptr : plane.row(y);
+  }
+
+  /// Convolves along an axis: the row at offset k is rowAt(k), or zero if null. Returns false, and
+  /// writes nothing, if all rows are zero.
+  template <typename RowAt>
+  bool addRows(std::size_t axis, float* to, const RowAt& rowAt) const {
+    BlurTaps taps;
     for (std::int64_t k = -kernelRadius(axis); k <= kernelRadius(axis); ++k)
-      visit(k, m_kernels[axis][static_cast<std::size_t>(std::abs(k))]);
-  }
-
-  /// Adds a row of a plane to `row`, and clears `row` first if it is marked as empty.
-  void addTo(float* row, char& isEmpty, const Plane& from, std::int64_t y, float weight) const {
-    if (from.isEmpty[static_cast<std::size_t>(y)])
-      return;
-    if (isEmpty)
-      std::fill_n(row, m_size.x(), 0.0F);
-    isEmpty = 0;
-    addRow(weight, from.values.data() + y * m_size.x(), m_size.x(), row);
+      if (const float* const row = rowAt(k)) {
+        taps.rows.push_back(row);
+        taps.weights.push_back(m_kernels[axis][static_cast<std::size_t>(std::abs(k))]);
+      }
+    if (taps.rows.empty())
+      return false;
+    HWY_DYNAMIC_DISPATCH(addTaps)(taps, m_size.x(), to);
+    return true;
   }
 
   template <typename PlaneAt>
   void writeRow(const PlaneAt& at, std::int64_t z, std::int64_t y, std::uint8_t* to) const {
-    std::vector<float> row(static_cast<std::size_t>(m_size.x()));
-    char isEmpty = 1;
-    forEachTap(
-        2, [&](std::int64_t k, float weight) { addTo(row.data(), isEmpty, at(z + k), y, weight); });
-    if (!isEmpty)
-      for (std::size_t x = 0; x < row.size(); ++x)
-        to[x] = static_cast<std::uint8_t>(std::min(row[x] * 255.0F + 0.5F, 255.0F));
+    std::vector<float> row(static_cast<std::size_t>(m_size.x() + BlurTaps::padding));
+    if (addRows(2, row.data(), [&](std::int64_t k) { return findRow(at(z + k), y); }))
+      for (std::int64_t x = 0; x < m_size.x(); ++x)
+        to[x] = static_cast<std::uint8_t>(
+            std::min(row[static_cast<std::size_t>(x)] * 255.0F + 0.5F, 255.0F));
   }
 
   const Mask& m_mask;
@@ -147,13 +195,19 @@ private:
 std::vector<std::uint8_t> blurMask(const Mask& mask, const Size3& first, const Size3& size,
                                    const Vec3& sigmas) {
   std::vector<std::uint8_t> result(static_cast<std::size_t>(size.prod()));
-  const Blur blur(mask, first, size, sigmas);
-  constexpr std::int64_t blockSize = 32; // slices; each block blurs its neighbors again
-  const std::int64_t blocks = (size.z() + blockSize - 1) / blockSize;
-  tbb::parallel_for(std::int64_t{0}, blocks, [&](std::int64_t block) {
-    blur.blurSlices(block * blockSize, std::min((block + 1) * blockSize, size.z()), result.data());
-  });
+  blurMask(mask, first, size, sigmas, result.data());
   return result;
 }
 
+void blurMask(const Mask& mask, const Size3& first, const Size3& size, const Vec3& sigmas,
+              std::uint8_t* to) {
+  const Blur blur(mask, first, size, sigmas);
+  constexpr std::int64_t blockSize = 64; // slices; each block blurs its neighbors again
+  const std::int64_t blocks = (size.z() + blockSize - 1) / blockSize;
+  tbb::parallel_for(std::int64_t{0}, blocks, [&](std::int64_t block) {
+    blur.blurSlices(block * blockSize, std::min((block + 1) * blockSize, size.z()), to);
+  });
+}
+
 } // namespace fenestra::core
+#endif

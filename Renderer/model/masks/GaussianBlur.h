@@ -11,5 +11,8 @@ namespace fenestra::core {
 /// truncated at three sigmas. Outside the mask's grid the nearest voxel repeats.
 std::vector<std::uint8_t> blurMask(const Mask& mask, const Size3& first, const Size3& size,
                                    const Vec3& sigmas);
+/// `to`: the voxels of the region, all 0 before.
+void blurMask(const Mask& mask, const Size3& first, const Size3& size, const Vec3& sigmas,
+              std::uint8_t* to);
 
 } // namespace fenestra::core

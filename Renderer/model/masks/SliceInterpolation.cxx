@@ -1,5 +1,6 @@
 #include "model/masks/MaskShaping.h"
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -47,27 +48,33 @@ public:
                                                   slice * m_step[2])] >= m_mask.threshold();
   }
 
+  /// Buffers of computeDistances(), per pixel.
+  struct Workspace {
+    std::vector<double> along, toInside, toOutside;
+  };
+
   /// Signed distance of each pixel to the slice's outline, negative inside, limited to
   /// maxDistance(): the distance to the nearest pixel on the other side, minus half a pixel.
-  std::vector<float> computeDistances(std::int64_t slice) const {
+  std::vector<float> computeDistances(std::int64_t slice, Workspace& space) const {
     const double half = 0.5 * std::min(m_edge[0], m_edge[1]);
-    const std::vector<double> toInside = squaredDistances(true, slice),
-                              toOutside = squaredDistances(false, slice);
-    std::vector<float> result(toInside.size());
-    std::ranges::transform(toInside, toOutside, result.begin(), [&](double inside, double outside) {
-      return static_cast<float>(inside > 0.0 ? std::sqrt(inside) - half
-                                             : half - std::sqrt(outside));
-    });
+    findSquaredDistances(true, slice, space.along, space.toInside);
+    findSquaredDistances(false, slice, space.along, space.toOutside);
+    std::vector<float> result(space.toInside.size());
+    std::ranges::transform(space.toInside, space.toOutside, result.begin(),
+                           [&](double inside, double outside) {
+                             return static_cast<float>(inside > 0.0 ? std::sqrt(inside) - half
+                                                                    : half - std::sqrt(outside));
+                           });
     return result;
   }
 
 private:
   double maxDistance() const { return 2.0 * m_thickness; }
 
-  /// Distances along rows to the nearest pixel that is inside (`inside` false: outside).
-  std::vector<double> rowDistances(bool inside, std::int64_t slice) const {
+  /// Finds the distances along rows to the nearest pixel that is inside (`inside` false: outside).
+  void findRowDistances(bool inside, std::int64_t slice, std::vector<double>& result) const {
     const auto [columns, rows, slices] = m_count;
-    std::vector<double> result(static_cast<std::size_t>(columns * rows));
+    result.resize(static_cast<std::size_t>(columns * rows));
     for (std::int64_t row = 0; row < rows; ++row) {
       double* const to = result.data() + columns * row;
       double distance = maxDistance();
@@ -80,7 +87,6 @@ private:
       for (std::int64_t column = columns; column-- > 0;)
         to[column] = std::min(to[column], advance(column));
     }
-    return result;
   }
 
   /// True if a pixel of the row is inside.
@@ -91,15 +97,17 @@ private:
     return false;
   }
 
-  /// Squared distances from all pixels to the nearest pixel inside; or, if `inside` is false, from
-  /// pixels inside to the nearest one outside.
-  std::vector<double> squaredDistances(bool inside, std::int64_t slice) const {
+  /// Finds the squared distances from all pixels to the nearest pixel inside; or, if `inside` is
+  /// false, from pixels inside to the nearest one outside. `along`: buffer for distances along
+  /// rows.
+  void findSquaredDistances(bool inside, std::int64_t slice, std::vector<double>& along,
+                            std::vector<double>& result) const {
     const auto [columns, rows, slices] = m_count;
     std::vector<std::uint8_t> hasInsidePixel(static_cast<std::size_t>(rows));
     for (std::int64_t row = 0; row < rows; ++row)
       hasInsidePixel[static_cast<std::size_t>(row)] = hasInside(row, slice);
-    const std::vector<double> along = rowDistances(inside, slice);
-    std::vector<double> result(along.size(), maxDistance() * maxDistance());
+    findRowDistances(inside, slice, along);
+    result.assign(along.size(), maxDistance() * maxDistance());
     const auto rowRange = static_cast<std::int64_t>(maxDistance() / m_edge[1]);
     for (std::int64_t row = 0; row < rows; ++row) {
       if (!inside && !hasInsidePixel[static_cast<std::size_t>(row)])
@@ -116,7 +124,6 @@ private:
         });
       }
     }
-    return result;
   }
 
   const Mask& m_mask;
@@ -154,8 +161,10 @@ Mask interpolateSlices(Mask mask) {
     return mask;
   const Slices slices(mask);
   std::vector<std::vector<float>> distances(static_cast<std::size_t>(slices.count()));
+  tbb::enumerable_thread_specific<Slices::Workspace> workspaces;
   tbb::parallel_for(std::size_t{0}, distances.size(), [&](std::size_t slice) {
-    distances[slice] = slices.computeDistances(static_cast<std::int64_t>(slice));
+    distances[slice] =
+        slices.computeDistances(static_cast<std::int64_t>(slice), workspaces.local());
   });
   const int axis = slices.axis();
   Mask result{subdivideGrid(mask.grid, axis, parts), {}, 0, mask.names};
