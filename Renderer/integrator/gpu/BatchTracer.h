@@ -4,10 +4,10 @@
 // traces the paths of another. A path's sample depends on that path alone, so tracers and batches
 // do not affect the image.
 
+#include "base/StopFlag.h"
 #include "integrator/gpu/BatchLimits.h"
 #include "integrator/gpu/Pipeline.h"
 #include "integrator/scalar/Counters.h"
-#include "integrator/scalar/StopFlag.h"
 
 namespace fenestra::core::gpu {
 

@@ -5,9 +5,9 @@
 
 #include "base/Random.h"
 #include "base/ScalarMath.h"
+#include "base/StopFlag.h"
 #include "integrator/scalar/Counters.h"
 #include "integrator/scalar/MajorantGrid.h"
-#include "integrator/scalar/StopFlag.h"
 #include "model/medium/Medium.h"
 #include "model/volume/Domain.h"
 #include "model/volume/GridWalk.h"

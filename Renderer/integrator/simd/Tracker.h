@@ -8,10 +8,10 @@
 // isSupported() is false need the scalar Tracker. Highway selects the instruction set at run time,
 // and the image records it.
 
+#include "base/StopFlag.h"
 #include "clip/field/Clip.h"
 #include "integrator/scalar/Counters.h"
 #include "integrator/scalar/MajorantGrid.h"
-#include "integrator/scalar/StopFlag.h"
 #include "integrator/simd/Medium.h"
 #include "model/medium/TransferFunction.h"
 #include "model/volume/Domain.h"
