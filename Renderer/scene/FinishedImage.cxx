@@ -38,7 +38,7 @@ void ImageDenoiser::attach(RenderMonitor& monitor) {
   monitor.onPassEnd = [this](const RenderResult& result, PassEnd& end) {
     if (!end.isNoiseDue)
       return;
-    m_checked = denoise(result.film, m_scene.view(), *m_scene.features());
+    m_checked = denoise(result.film, m_scene.view(), *m_scene.features(), m_stop);
     m_checkedSamples = result.film.sampleCounts().max;
     // Two standard errors more, so that the render does not stop by chance.
     end.displayNoise = std::sqrt(m_checked.estimatedError + 2.0 * m_checked.errorUncertainty);
@@ -50,7 +50,7 @@ std::optional<FilteredImage> ImageDenoiser::apply(const RenderResult& result) co
     return std::nullopt;
   if (result.reason == StopReason::noise && m_checkedSamples == result.finishedSamples)
     return m_checked;
-  return denoise(result.film, m_scene.view(), *m_scene.features());
+  return denoise(result.film, m_scene.view(), *m_scene.features(), m_stop);
 }
 
 std::optional<double> denoisedNoise(const std::optional<FilteredImage>& filtered) {

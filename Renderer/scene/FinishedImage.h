@@ -22,7 +22,9 @@ double estimateFraction(const RenderMonitor& monitor, const RenderSettings& sett
 /// Denoiser of one render. The scene must outlive it.
 class ImageDenoiser {
 public:
-  explicit ImageDenoiser(const PreparedScene& scene) : m_scene(scene) {}
+  /// `stop`: once true, images are of no use, and the denoiser returns soon with any.
+  explicit ImageDenoiser(const PreparedScene& scene, const StopFlag& stop = neverStopped)
+      : m_scene(scene), m_stop(stop) {}
 
   /// Estimates PassEnd::displayNoise, the denoised noise, in monitor.onPassEnd. The callback stores
   /// its last result here.
@@ -32,6 +34,7 @@ public:
 
 private:
   const PreparedScene& m_scene;
+  const StopFlag& m_stop;
   FilteredImage m_checked;            ///< by the last noise check
   std::uint64_t m_checkedSamples = 0; ///< samples per pixel of that check; 0: none yet
 };

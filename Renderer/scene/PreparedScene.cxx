@@ -34,11 +34,6 @@ void refuseAssumptions(const std::vector<Message>& warnings) {
       throw Error(ErrorKind::input, warning);
 }
 
-void requireRunning(const StopFlag& stop) {
-  if (stop)
-    throw requestError(ErrorCode::stopped, "render", "was stopped before the first pass");
-}
-
 } // namespace
 
 PreparedScene::PreparedScene(const RenderRequest& request)
@@ -49,9 +44,17 @@ PreparedScene::PreparedScene(const RenderRequest& request, const Input& input, c
   prepare(stop);
 }
 
-PreparedScene PreparedScene::withRequest(const RenderRequest& request, const StopFlag& stop) const {
+PreparedScene PreparedScene::withRequest(const RenderRequest& request, const StopFlag& stop,
+                                         const PreparedScene* sameSize) const {
   PreparedScene scene = *this;
   scene.m_request = request;
+  if (sameSize) {
+    scene.m_camera = sameSize->m_camera;
+    scene.m_lights = sameSize->m_lights;
+    scene.m_clip = sameSize->m_clip;
+    scene.m_majorants = sameSize->m_majorants;
+    scene.m_features = sameSize->m_features;
+  }
   if (request.input != m_input.path())
     scene.m_input = Input(request.input);
   scene.prepare(stop);
@@ -155,7 +158,7 @@ void PreparedScene::prepare(const StopFlag& stop) {
   requireRunning(stop);
   if (r.features)
     m_features.get(volume, settings, transfer, tintOrMixture(), placed, camera, clip,
-                   m_style.result(), majorants);
+                   m_style.result(), majorants, r.featureEffort, {&stop});
 }
 
 InputChoice PreparedScene::chooseSegmentation() const {

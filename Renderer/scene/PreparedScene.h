@@ -46,9 +46,10 @@ public:
   static Focus readFocus(const RenderRequest& request, const Input& input);
 
   /// Returns the scene of another request. Recomputes only the stages that depend on a difference
-  /// from this scene's request. Files are assumed not to change. Throws Error.
-  PreparedScene withRequest(const RenderRequest& request,
-                            const StopFlag& stop = neverStopped) const;
+  /// from this scene's request. Files are assumed not to change. `sameSize`: an earlier scene with
+  /// the size of the request, or null; shares those stages that depend on the size. Throws Error.
+  PreparedScene withRequest(const RenderRequest& request, const StopFlag& stop = neverStopped,
+                            const PreparedScene* sameSize = nullptr) const;
 
   SceneView view() const {
     const TintOrMixture medium = tintOrMixture();

@@ -3,6 +3,7 @@
 
 #include "base/Error.h"
 #include "clip/surface/ClippingSurface.h"
+#include "denoise/features/FeatureBuffers.h"
 #include "files/medical/VolumeChoice.h"
 #include "integrator/render/Render.h"
 #include "model/camera/Camera.h"
@@ -123,7 +124,8 @@ struct RenderRequest {
   ClipRequest clip;
   int width = 512, height = 512;
   bool features = false; ///< compute the feature buffers of the denoiser
-  bool measure = false;  ///< measure the clip; traces the focus even if no clip needs it
+  FeatureEffort featureEffort = FeatureEffort::full;
+  bool measure = false; ///< measure the clip; traces the focus even if no clip needs it
   FocusRequest focusStyle = {};
   /// Half-width of the angular window over which a turntable's clipping surface is smoothed,
   /// degrees (clip/surface/SteadySurface.h).

@@ -427,14 +427,23 @@ MajorantGrid buildMajorants(const VolumeHandle& volume, const Handle<MinMaxGrid>
   return {volume->volume.grid, *minMax, transfer->function, clip->clip, style.get(), mixture.get()};
 }
 
+void requireRunning(const StopFlag& stop) {
+  if (stop)
+    throw requestError(ErrorCode::stopped, "render", "was stopped before the first pass");
+}
+
 FeatureBuffers marchFirstHits(const VolumeHandle& volume, const SettingsHandle& settings,
                               const Handle<TransferChoice>& transfer, const TintOrMixture& segments,
                               const Handle<LightSet>& lights, const Handle<Camera>& camera,
                               const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
-                              const Handle<MajorantGrid>& majorants) {
-  return computeFeatures({volume->volume, transfer->function, *majorants, *lights, *camera,
-                          clip->clip, settings->crop, style.get(), segments.tint.get(),
-                          segments.mixture.get()});
+                              const Handle<MajorantGrid>& majorants, FeatureEffort effort,
+                              const StageStop& stop) {
+  FeatureBuffers features =
+      computeFeatures({volume->volume, transfer->function, *majorants, *lights, *camera, clip->clip,
+                       settings->crop, style.get(), segments.tint.get(), segments.mixture.get()},
+                      effort, *stop.flag);
+  requireRunning(*stop.flag);
+  return features;
 }
 
 } // namespace fenestra::core

@@ -179,11 +179,22 @@ struct TintOrMixture {
   bool operator==(const TintOrMixture&) const = default;
 };
 
-/// Feature buffers of the denoiser. `style`: null if the context is unchanged.
+/// Stop flag of a stage, which is no part of its key.
+struct StageStop {
+  const StopFlag* flag;
+
+  bool operator==(const StageStop& /*other*/) const { return true; }
+};
+/// Throws Error (request, ErrorCode::stopped) if the flag is set.
+void requireRunning(const StopFlag& stop);
+
+/// Feature buffers of the denoiser. `style`: null if the context is unchanged. Throws as
+/// requireRunning, soon after the flag was set.
 FeatureBuffers marchFirstHits(const VolumeHandle& volume, const SettingsHandle& settings,
                               const Handle<TransferChoice>& transfer, const TintOrMixture& segments,
                               const Handle<LightSet>& lights, const Handle<Camera>& camera,
                               const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
-                              const Handle<MajorantGrid>& majorants);
+                              const Handle<MajorantGrid>& majorants, FeatureEffort effort,
+                              const StageStop& stop);
 
 } // namespace fenestra::core

@@ -66,6 +66,16 @@ double meanDepth(double extinction, double length) {
   return (1.0 - transmittance * (1.0 + extinction * length)) / extinction;
 }
 
+/// Root mean square of the differences, relative to that of `b`.
+double relativeDifference(const Plane& a, const Plane& b) {
+  double difference = 0.0, reference = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference += std::pow(static_cast<double>(a[i]) - static_cast<double>(b[i]), 2.0);
+    reference += std::pow(static_cast<double>(b[i]), 2.0);
+  }
+  return std::sqrt(difference / reference);
+}
+
 TEST(FeatureBuffers, OfASlabHaveTheirClosedForm) {
   for (const double extinction : {1e-3, 0.05, 0.4, 3.0}) {
     const FeatureBuffers features = renderFeatures(makeSlab(extinction));
@@ -77,6 +87,41 @@ TEST(FeatureBuffers, OfASlabHaveTheirClosedForm) {
     EXPECT_NEAR(features.albedo[1][middle], 0.5 * features.hit[middle], 1e-5);
     EXPECT_EQ(features.normal[0][middle], 0.0F); // no gradient
   }
+}
+
+TEST(FeatureBuffers, HalfOfTheLightIsStoppedWhereTheTransmittanceIsAHalf) {
+  for (const double extinction : {0.05, 0.4, 3.0, 40.0})
+    makeSlab(extinction).visitView([&](const SceneView& scene) {
+      const double inside = std::log(2.0) / extinction;
+      for (const FeatureBuffers& features : {computeFeatures(scene), computeScalarFeatures(scene)})
+        for (const std::size_t pixel : {std::size_t{0}, features.hit.size() / 2 + 8})
+          if (inside > 10.0)
+            EXPECT_EQ(features.depth50[pixel], infinity);
+          else
+            EXPECT_NEAR(features.depth50[pixel], 50.0 + inside, 0.005) << extinction;
+    });
+}
+
+TEST(FeatureBuffers, EndSoonOnceStopped) {
+  const StopFlag stop = true;
+  makeWaves().visitView([&](const SceneView& scene) {
+    const FeatureBuffers features = computeFeatures(scene, FeatureEffort::full, stop);
+    EXPECT_EQ(features.hit, Plane(features.hit.size(), 0.0F));
+  });
+}
+
+TEST(FeatureBuffers, DraftsDifferAtEdgesOnly) {
+  makeWaves().visitView([&](const SceneView& scene) {
+    const FeatureBuffers full = computeFeatures(scene);
+    const FeatureBuffers draft = computeFeatures(scene, FeatureEffort::draft);
+    EXPECT_EQ(draft.depth50, full.depth50);
+    std::size_t equal = 0;
+    for (std::size_t i = 0; i < full.hit.size(); ++i)
+      equal += draft.hit[i] == full.hit[i] ? 1 : 0;
+    EXPECT_GT(equal, full.hit.size() / 4);
+    EXPECT_LT(equal, full.hit.size());
+    EXPECT_LT(relativeDifference(draft.light, full.light), 0.5);
+  });
 }
 
 TEST(FeatureBuffers, LightOfASlabHasItsClosedForm) {
@@ -116,14 +161,12 @@ TEST(FeatureBuffers, TerminateOnAnAxisOfMoreThanHalfAMillionVoxels) {
   });
 }
 
-/// Root mean square of the differences, relative to that of `b`.
-double relativeDifference(const Plane& a, const Plane& b) {
-  double difference = 0.0, reference = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    difference += std::pow(static_cast<double>(a[i]) - static_cast<double>(b[i]), 2.0);
-    reference += std::pow(static_cast<double>(b[i]), 2.0);
-  }
-  return std::sqrt(difference / reference);
+/// depth50 with finite values only.
+Plane boundDepth(const FeatureBuffers& features) {
+  Plane depth = features.depth50;
+  for (float& value : depth)
+    value = std::min(value, 100.0F);
+  return depth;
 }
 
 TEST(FeatureBuffers, SimdAgreesWithScalarMarching) {
@@ -146,6 +189,7 @@ TEST(FeatureBuffers, SimdAgreesWithScalarMarching) {
       EXPECT_LT(relativeDifference(simd.hit, scalar.hit), 0.01);
       EXPECT_LT(relativeDifference(simd.depth, scalar.depth), 0.01);
       EXPECT_LT(relativeDifference(simd.light, scalar.light), 0.2);
+      EXPECT_LT(relativeDifference(boundDepth(simd), boundDepth(scalar)), 0.01);
       for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_LT(relativeDifference(simd.albedo[c], scalar.albedo[c]), 0.02);
         EXPECT_LT(relativeDifference(simd.normal[c], scalar.normal[c]), 0.2);

@@ -15,9 +15,12 @@ namespace fenestra::core {
 FilterInput makeFilterInput(const Film& film, const SceneView& scene,
                             const FeatureBuffers& features);
 
+/// Once `stop` is true, returns soon with any result.
 inline FilteredImage denoise(const Film& film, const SceneView& scene,
-                             const FeatureBuffers& features) {
-  return filterImage(makeFilterInput(film, scene, features));
+                             const FeatureBuffers& features, const StopFlag& stop = neverStopped) {
+  FilterInput input = makeFilterInput(film, scene, features);
+  input.stop = &stop;
+  return filterImage(std::move(input));
 }
 
 } // namespace fenestra::core

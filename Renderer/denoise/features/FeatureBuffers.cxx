@@ -54,24 +54,36 @@ PrimaryHit average(std::span<const PrimaryHit> parts) {
   return mean;
 }
 
+/// Calls work(row) for each row of the image, until `stop` is true.
+template <typename Work>
+void forEachRow(int rows, const StopFlag& stop, const Work& work) {
+  tbb::parallel_for(0, rows, [&](int row) {
+    if (!stop.load(std::memory_order_relaxed))
+      work(row);
+  });
+}
+
 template <typename March>
-Raster marchPixels(const Camera& camera, const March& march) {
+Raster marchPixels(const Camera& camera, const March& march, FeatureEffort effort,
+                   const StopFlag& stop) {
   const int width = camera.width(), height = camera.height();
   Raster raster{width, height, {}};
   raster.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  tbb::parallel_for(0, height, [&](int row) {
+  forEachRow(height, stop, [&](int row) {
     std::vector<RasterPoint> centers;
     for (int column = 0; column < width; ++column)
       centers.push_back({column + 0.5, row + 0.5});
     march.integrateHits(centers, &raster.pixels[raster.index(0, row)]);
   });
+  if (effort == FeatureEffort::draft)
+    return raster;
   std::vector<std::vector<int>> edges(static_cast<std::size_t>(height)); // columns
-  tbb::parallel_for(0, height, [&](int row) {
+  forEachRow(height, stop, [&](int row) {
     for (int column = 0; column < width; ++column)
       if (isAtEdge(raster, column, row, camera.pixelPitch()))
         edges[static_cast<std::size_t>(row)].push_back(column);
   });
-  tbb::parallel_for(0, height, [&](int row) {
+  forEachRow(height, stop, [&](int row) {
     std::vector<RasterPoint> points;
     for (const int column : edges[static_cast<std::size_t>(row)])
       for (const double y : {0.25, 0.75})
@@ -81,7 +93,10 @@ Raster marchPixels(const Camera& camera, const March& march) {
     march.integrateHits(points, parts.data());
     std::span<const PrimaryHit> left = parts;
     for (const int column : edges[static_cast<std::size_t>(row)]) {
-      raster.pixels[raster.index(column, row)] = average(left.first(4));
+      PrimaryHit& pixel = raster.pixels[raster.index(column, row)];
+      const float depth50 = pixel.depth50;
+      pixel = average(left.first(4));
+      pixel.depth50 = depth50;
       left = left.subspan(4);
     }
   });
@@ -92,18 +107,17 @@ Raster marchPixels(const Camera& camera, const March& march) {
 template <typename Voxel, typename March>
 class DirectLight {
 public:
-  DirectLight(const SceneView& scene, const Medium<Voxel>& medium, const March& march)
-      : m_scene(scene), m_medium(medium), m_march(march) {}
+  /// `samples`: of the lights, per point.
+  DirectLight(const SceneView& scene, const Medium<Voxel>& medium, const March& march, int samples)
+      : m_scene(scene), m_medium(medium), m_march(march), m_samples(samples) {}
 
-  Plane compute(const Raster& raster) const {
+  Plane compute(const Raster& raster, const StopFlag& stop) const {
     Plane light(raster.pixels.size(), 0.0F);
-    tbb::parallel_for(0, raster.height, [&](int row) { addRow(raster, row, light); });
+    forEachRow(raster.height, stop, [&](int row) { addRow(raster, row, light); });
     return light;
   }
 
 private:
-  static constexpr int samples = 4; ///< light samples per point
-
   /// Mean collision of a pixel.
   struct Collision {
     std::size_t pixel;
@@ -116,7 +130,7 @@ private:
     const std::vector<Collision> collisions = findCollisions(raster, row);
     std::vector<ShadowRay> rays;
     std::vector<std::size_t> pixels;
-    for (int sample = 0; sample < samples; ++sample) // so that neighboring rays are similar
+    for (int sample = 0; sample < m_samples; ++sample) // so that neighboring rays are similar
       for (const Collision& at : collisions)
         if (const auto ray = makeShadowRay(at, sample)) {
           rays.push_back(*ray);
@@ -164,7 +178,7 @@ private:
   /// All points use the same random numbers: integration errors vary smoothly and are not noise.
   std::optional<ShadowRay> makeShadowRay(const Collision& at, int sample) const {
     Random random(0, 0, static_cast<std::uint64_t>(sample));
-    const double choice = (sample + random.uniform()) / samples;
+    const double choice = (sample + random.uniform()) / m_samples;
     const auto light = m_scene.lights.sample(at.point, choice, random.uniform2());
     if (!light)
       return std::nullopt;
@@ -178,7 +192,7 @@ private:
     if (probability > 0.0)
       add(probability,
           {at.incoming, at.medium.gradient, *at.medium.transfer->shading, at.medium.albedo});
-    const Rgb radiance = factor * light->radiance * (at.hit / (light->pdf * samples));
+    const Rgb radiance = factor * light->radiance * (at.hit / (light->pdf * m_samples));
     if (!(radiance.maxCoeff() > 0.0))
       return std::nullopt;
     return ShadowRay{{at.point, light->direction}, light->distance, radiance};
@@ -187,6 +201,7 @@ private:
   const SceneView& m_scene;
   const Medium<Voxel>& m_medium;
   const March& m_march;
+  const int m_samples;
 };
 
 FeatureBuffers toFeatures(const Raster& raster) {
@@ -198,6 +213,7 @@ FeatureBuffers toFeatures(const Raster& raster) {
   };
   fill(features.hit, [](const PrimaryHit& primary) { return primary.hit; });
   fill(features.depth, [](const PrimaryHit& primary) { return primary.depth; });
+  fill(features.depth50, [](const PrimaryHit& primary) { return primary.depth50; });
   for (std::size_t c = 0; c < 3; ++c) {
     fill(features.albedo[c], [c](const PrimaryHit& primary) { return primary.albedo[c]; });
     fill(features.normal[c], [c](const PrimaryHit& primary) { return primary.normal[c]; });
@@ -209,26 +225,28 @@ FeatureBuffers toFeatures(const Raster& raster) {
 
 template <typename Voxel, typename March>
 FeatureBuffers marchFeatures(const SceneView& scene, const Medium<Voxel>& medium,
-                             const March& march) {
-  const Raster raster = marchPixels(scene.camera, march);
+                             const March& march, FeatureEffort effort, const StopFlag& stop) {
+  const Raster raster = marchPixels(scene.camera, march, effort, stop);
   FeatureBuffers features = toFeatures(raster);
-  features.light = DirectLight<Voxel, March>(scene, medium, march).compute(raster);
+  const int samples = effort == FeatureEffort::draft ? 1 : 4;
+  features.light = DirectLight<Voxel, March>(scene, medium, march, samples).compute(raster, stop);
   return features;
 }
 
 } // namespace
 
-FeatureBuffers computeFeatures(const SceneView& scene) {
+FeatureBuffers computeFeatures(const SceneView& scene, FeatureEffort effort, const StopFlag& stop) {
   if (!canUseSimd(scene))
-    return computeScalarFeatures(scene);
+    return computeScalarFeatures(scene, effort, stop);
   return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
-    return marchFeatures(scene, medium, SimdFeatureMarcher(scene));
+    return marchFeatures(scene, medium, SimdFeatureMarcher(scene), effort, stop);
   });
 }
 
-FeatureBuffers computeScalarFeatures(const SceneView& scene) {
+FeatureBuffers computeScalarFeatures(const SceneView& scene, FeatureEffort effort,
+                                     const StopFlag& stop) {
   return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
-    return marchFeatures(scene, medium, ScalarFeatureMarcher<Voxel>(scene, medium));
+    return marchFeatures(scene, medium, ScalarFeatureMarcher<Voxel>(scene, medium), effort, stop);
   });
 }
 

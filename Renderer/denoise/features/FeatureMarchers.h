@@ -6,6 +6,7 @@
 #include "integrator/render/Render.h"
 #include "integrator/scalar/PathSteps.h"
 
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -14,6 +15,7 @@ namespace fenestra::core {
 /// Expected values of one camera ray or pixel (FeatureBuffers).
 struct PrimaryHit {
   float hit = 0.0F, depth = 0.0F;
+  float depth50 = std::numeric_limits<float>::infinity();
   std::array<float, 3> albedo = {}, normal = {}, surfaceNormal = {};
 };
 
@@ -36,8 +38,9 @@ public:
       const Ray ray = m_scene.camera.makeRay(point.column, point.row);
       const ExpectedHit first = m_march.integrateHits(
           ray, visibleInterval(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
-      PrimaryHit primary{narrow(first.hit),
-                         narrow(first.distance * m_scene.camera.depthPerLength(ray))};
+      const double perLength = m_scene.camera.depthPerLength(ray);
+      PrimaryHit primary{narrow(first.hit), narrow(first.distance * perLength),
+                         narrow(first.distance50 * perLength)};
       primary.albedo = narrow3(first.albedo.matrix());
       primary.normal = narrow3(first.normal);
       primary.surfaceNormal = narrow3(first.surfaceNormal);
@@ -102,6 +105,7 @@ private:
     PrimaryHit primary;
     primary.hit = batch.hit[i];
     primary.depth = narrow((batch.distance[i] + before * batch.hit[i]) * perLength);
+    primary.depth50 = narrow((batch.distance50[i] + before) * perLength);
     for (std::size_t c = 0; c < 3; ++c) {
       primary.albedo[c] = batch.albedo[c][i];
       primary.normal[c] = batch.normal[c][i];

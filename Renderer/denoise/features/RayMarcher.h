@@ -15,8 +15,9 @@ namespace fenestra::core {
 /// Integrals over the first collision of a ray, weighted by its pdf T(t) sigma_t(t) dt. A ray
 /// without collision contributes 0.
 struct ExpectedHit {
-  double hit = 0.0;      ///< probability of a collision
-  double distance = 0.0; ///< from the ray's origin, mm
+  double hit = 0.0;             ///< probability of a collision
+  double distance = 0.0;        ///< from the ray's origin, mm
+  double distance50 = infinity; ///< at which half of the light is stopped; infinity: never
   Rgb albedo = Rgb::Zero();
   Vec3 surfaceNormal = Vec3::Zero(); ///< normal times the probability of scattering at a surface
   Vec3 normal = Vec3::Zero();        ///< unit or zero, world axes, toward the camera
@@ -46,8 +47,11 @@ public:
       return {};
     Sums sums;
     forEachStep(*part, 1.0, [&](double t, double length, double extinction) {
-      const double stopped = sums.transmittance * -std::expm1(-extinction * length);
+      const double before = sums.transmittance;
+      const double stopped = before * -std::expm1(-extinction * length);
       sums.transmittance -= stopped;
+      if (before > 0.5 && sums.transmittance <= 0.5)
+        sums.expected.distance50 = part->before + t + length * ((before - 0.5) / stopped - 0.5);
       sums.pending += stopped;
       sums.moment += stopped * t;
       if (sums.pending > MarchAccuracy::groupProbability)

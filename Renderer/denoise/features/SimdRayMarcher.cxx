@@ -33,6 +33,7 @@ public:
 
   bool isDone() const { return !m_busy.any(); }
   Float transmittance() const { return m_transmittance; }
+  Float distance50() const { return m_distance50; }
   const Float3& direction() const { return m_direction; }
   HWY_INLINE Float3 pointAt(Float t) const { return m_origin + t * m_direction; }
 
@@ -88,7 +89,11 @@ private:
     const Float extinction = all.clipped + all.unclipped;
     const Float passed = exp(-(extinction * length));
     const Float stopped = zeroUnless(filled, m_transmittance * (1.0F - passed));
-    m_transmittance = m_transmittance - stopped;
+    const Float left = m_transmittance - stopped;
+    const LaneMask halved = (m_transmittance > 0.5F).without(left > 0.5F);
+    const Float fraction = (m_transmittance - 0.5F) / stopped;
+    m_distance50 = select(halved, fma(fraction, length, m_t), m_distance50);
+    m_transmittance = left;
     m_pending = m_pending + stopped;
     m_moment = fma(stopped, middle, m_moment);
   }
@@ -102,6 +107,7 @@ private:
   LaneMask m_busy;
   Float m_t = 0.0F, m_transmittance = 1.0F;
   Float m_pending = 0.0F, m_moment = 0.0F;
+  Float m_distance50 = std::numeric_limits<float>::infinity();
 };
 
 template <typename Voxel>
@@ -165,7 +171,8 @@ public:
     return {scale * sums.albedo, scale * sums.opacity};
   }
 
-  void write(MarchBatch& batch, std::size_t first) const {
+  void write(const Walk<Voxel>& walk, MarchBatch& batch, std::size_t first) const {
+    store(walk.distance50(), &batch.distance50[first]);
     store(m_hit, &batch.hit[first]);
     store(m_distance, &batch.distance[first]);
     store3(m_albedo, batch.albedo, first);
@@ -197,7 +204,7 @@ void marchCameraAll(const SimdMedium& medium, const SimdShading& shading, MarchB
         if (due.any())
           sums.collect(walk, due);
       }
-      sums.write(batch, first);
+      sums.write(walk, batch, first);
     }
   };
   std::visit(march, medium.voxels);

@@ -9,7 +9,7 @@ namespace fenestra::core {
 /// Rays, and the ExpectedHit of each; distances count from the ray's origin in the batch.
 struct MarchBatch {
   RayBatch rays;
-  SoaArray<float> hit, distance;
+  SoaArray<float> hit, distance, distance50;
   SoaArray3 albedo, normal, surfaceNormal;
 };
 

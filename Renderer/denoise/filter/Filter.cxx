@@ -69,7 +69,7 @@ bool standardize(Plane& feature, const Plane& active) {
 }
 
 FitInput prepareInput(FilterInput& input, std::size_t channels) {
-  FitInput fit{input.width, input.height, {}, {}, {}};
+  FitInput fit{input.width, input.height, {}, {}, {}, input.stop};
   for (std::size_t c = 0; c < channels; ++c)
     fit.color.push_back(std::move(input.even[c]));
   for (std::size_t c = 0; c < channels && input.hasHalfBuffers; ++c)

@@ -1,6 +1,7 @@
 #pragma once
 // Input and result of the filter: planes with one value per pixel.
 
+#include "base/StopFlag.h"
 #include "image/Image.h"
 
 #include <array>
@@ -24,6 +25,7 @@ struct FilterInput {
   std::vector<Plane> features;
   std::vector<std::uint8_t> isActive; ///< 0: the pixel is ignored and stays unfiltered
   bool hasHalfBuffers = true;
+  const StopFlag* stop = &neverStopped; ///< once true, the filter returns soon with any result
 
   std::size_t pixelCount() const { return isActive.size(); }
 };

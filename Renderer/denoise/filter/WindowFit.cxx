@@ -73,7 +73,7 @@ public:
     // A sum of fits needs fits of two more rows, and a fit needs sums of two more rows.
     // Interpolation between cells needs one more row of fit sums on each side.
     const std::int64_t first = m_row - 1, end = std::min(m_row + rows, cells(m_input.height)) + 1;
-    for (std::int64_t row = first - 4; row < end + 4; ++row) {
+    for (std::int64_t row = first - 4; row < end + 4 && !*m_input.stop; ++row) {
       sumCells(row);
       if (row >= first)
         fitRow(row - 2);

@@ -12,9 +12,10 @@ namespace fenestra::core {
 /// Planes for the fit; 0 at inactive pixels.
 struct FitInput {
   int width = 0, height = 0;
-  Plane active;                ///< 1 or 0
-  std::vector<Plane> features; ///< mean 0 and standard deviation 1 over the active pixels
-  std::vector<Plane> color;    ///< channels of the first half buffer, then of the second
+  Plane active;                         ///< 1 or 0
+  std::vector<Plane> features;          ///< mean 0 and standard deviation 1 over the active pixels
+  std::vector<Plane> color;             ///< channels of the first half buffer, then of the second
+  const StopFlag* stop = &neverStopped; ///< FilterInput::stop
 };
 
 /// Cells of a tile, which one thread processes. With three more windows on each side, a row has 64
