@@ -7,13 +7,25 @@
 #include "program/Commands.h"
 #include "program/ErrorAdvice.h"
 #include "program/RenderSteps.h"
+#include "program/ServeFrame.h"
 #include "program/ServeInput.h"
 
+#include <algorithm>
+#include <iterator>
+#include <map>
 #include <set>
 #include <span>
 
 namespace fenestra::core {
 namespace {
+
+const Option serveTable[] = {
+    {"frame", "FILE", "Preview",
+     "File that other programs map into their memory (files/images/FrameFile.h describes it): "
+     "images at a quarter, half and full resolution, with depth; then only a given --output is "
+     "written, too, at full resolution",
+     ValueSpec::text(), OverrideGroup::process},
+};
 
 /// Options of render with the defaults of serve: its images are previews, so the GPU may render
 /// them.
@@ -23,37 +35,76 @@ void setServeDefaults(RenderOptions& options, const OptionValues& values) {
     options.device = DeviceChoice::automatic;
 }
 
+/// Renders the scene of the last change, as a ladder of sizes if there is a frame file.
 class Server {
 public:
-  Server(const RenderJob& start, Outputs& outputs)
+  /// `frame`: file to map; empty: none.
+  Server(const RenderJob& start, const std::filesystem::path& frame, Outputs& outputs)
       : m_source(start.input),
         m_values(start.stored),
         m_options(start.options),
         m_outputs(outputs),
+        m_hasFiles(frame.empty() || start.values.has("output")),
         m_input(m_values, m_source, m_monitor) {
     setServeDefaults(m_options, m_values);
+    if (!frame.empty())
+      m_frame.emplace(frame, outputs);
   }
 
   /// Runs until the process ends. Throws Error if the first scene cannot be built.
   [[noreturn]] void run() {
-    m_scene.emplace(m_options.scene, m_source);
+    prepare(m_options, listRungs(m_options).front(), neverStopped);
     m_outputs.checkInputs();
     requireScale(m_options, m_scene->camera().pose().projection);
     for (;;) {
-      renderPictures();
+      renderImages();
       do {
-        const ServeChanges changes = m_input.next();
-        if (!applyChanges(changes))
-          m_input.revert(m_values);
+        ServeChanges changes;
+        do {
+          std::ranges::move(m_input.next(), std::back_inserter(changes));
+          m_startSeconds = changes.back().age.seconds();
+        } while (!applyUnlessStopped(changes));
       } while (m_isComplete);
     }
   }
 
 private:
-  /// Builds one scene for all changes. If that fails, tries each half separately, down to single
-  /// changes. A single change that fails is reported and has no effect. Returns whether all changes
-  /// were applied at once.
-  bool applyChanges(std::span<const ServeChange> changes) {
+  std::vector<Rung> listRungs(const RenderOptions& options) const {
+    return m_frame ? chooseRungs(options.scene.width, options.scene.height)
+                   : std::vector<Rung>{{1}};
+  }
+
+  /// Builds the scene of `options` for one size. It shares stages with the newest scene, and those
+  /// that depend on the size with the last scene of this size.
+  void prepare(const RenderOptions& options, const Rung& rung, const StopFlag& stop) {
+    RenderRequest request = options.scene;
+    request.width = rung.reduce(request.width);
+    request.height = rung.reduce(request.height);
+    request.featureEffort = rung.isFull() ? FeatureEffort::full : FeatureEffort::draft;
+    const auto earlier = m_scenes.find(rung.scale);
+    PreparedScene scene =
+        m_scene ? m_scene->withRequest(request, stop,
+                                       earlier == m_scenes.end() ? nullptr : &earlier->second)
+                : PreparedScene(request, m_source, stop);
+    m_outputs.checkInputs();
+    requireScale(options, scene.camera().pose().projection);
+    m_scenes.insert_or_assign(rung.scale, scene);
+    m_scene = std::move(scene);
+  }
+
+  /// Applies all changes. Returns false if a newer change came meanwhile; nothing has changed then.
+  bool applyUnlessStopped(const ServeChanges& changes) {
+    const Applied applied = applyChanges(changes, m_monitor.stop);
+    if (applied == Applied::no) {
+      applyHalves(changes);
+      m_input.revert(m_values);
+    }
+    return applied != Applied::stopped;
+  }
+
+  enum class Applied { yes, no, stopped };
+  /// Builds one scene for all changes. A single change for which that fails is reported.
+  Applied applyChanges(std::span<const ServeChange> changes, const StopFlag& stop) {
     try {
       OptionValues values = m_values;
       for (const ServeChange& change : changes)
@@ -61,62 +112,94 @@ private:
       RenderOptions options = makeRenderOptions(mergePreset(values, m_source));
       setServeDefaults(options, values);
       checkMemory(options.scene);
-      PreparedScene scene = m_scene->withRequest(options.scene);
-      m_outputs.checkInputs();
-      requireScale(options, scene.camera().pose().projection);
-      m_scene = std::move(scene);
+      prepare(options, listRungs(options).front(), stop);
       m_options = options;
       m_values = values;
       m_change = changes.back();
       m_isComplete = false;
-      return true;
+      return Applied::yes;
     } catch (const Error& error) {
       m_outputs.unregisterInputs();
+      if (error.message().code == ErrorCode::stopped)
+        return Applied::stopped;
       if (changes.size() == 1)
         writeErrorEvent(changes.front().id, error.message());
     }
-    if (changes.size() > 1) {
-      applyChanges(changes.first(changes.size() / 2));
-      applyChanges(changes.subspan(changes.size() / 2));
-    }
-    return false;
+    return Applied::no;
   }
 
-  /// Publishes the first image at once, later ones at most every 0.1 seconds, and so rarely that
-  /// most of the time is spent on samples.
-  void renderPictures() {
+  /// Applies each half of the changes separately, down to single changes.
+  void applyHalves(std::span<const ServeChange> changes) {
+    if (changes.size() == 1)
+      return;
+    for (const auto half : {changes.first(changes.size() / 2), changes.subspan(changes.size() / 2)})
+      if (applyChanges(half, neverStopped) == Applied::no)
+        applyHalves(half);
+  }
+
+  /// Renders the scene at each size, until all are complete or a change comes.
+  void renderImages() {
     m_isComplete = false;
+    m_failure.clear();
+    try {
+      for (const Rung& rung : listRungs(m_options)) {
+        prepare(m_options, rung, m_monitor.stop);
+        if (!renderImage(rung))
+          return;
+      }
+    } catch (const Error& error) {
+      if (error.message().code == ErrorCode::stopped)
+        return;
+      writeErrorEvent(m_change.id, error.message());
+    }
+    m_isComplete = true;
+  }
+
+  /// Renders one size. Publishes the first image at once, later ones at most every 0.1 seconds, and
+  /// so rarely that most of the time is spent on samples. Returns false if it was stopped.
+  bool renderImage(const Rung& rung) {
     m_monitor.noise = infinity;
     m_monitor.paths = 0;
     m_published.reset();
-    m_failure.clear();
-    ImageDenoiser filter(*m_scene);
+    ImageDenoiser filter(*m_scene, m_monitor.stop);
     filter.attach(m_monitor);
-    m_monitor.onPause = [this, &filter](const RenderResult& result) {
+    m_monitor.onPause = [this, &filter, &rung](const RenderResult& result) {
       const double interval = std::max(0.1, 4.0 * m_publishSeconds);
       if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
-        publish(result, filter, false);
+        publish(result, filter, rung, false);
     };
     RenderSettings settings = makeSettings(m_options, m_scene->background());
     settings.passGrowth = 1; // short passes, since images are shown between them
+    if (!rung.isFull()) {
+      settings.samples = 1;
+      settings.noise = -1.0;
+    }
     if (m_hasGpuFailed)
       settings.integrator = Integrator::simd;
     const RenderResult result = render(m_scene->view(), settings, m_monitor);
     m_hasGpuFailed = m_hasGpuFailed || !result.gpuFailure.empty();
-    m_isComplete = result.reason != StopReason::request;
-    if (m_isComplete)
-      publish(result, filter, true);
+    if (result.reason == StopReason::request)
+      return false;
+    publish(result, filter, rung, rung.isFull());
+    return !m_monitor.stop;
   }
 
   /// Writes the images and reports them. A failure, such as a full disk, is reported as well, for
   /// intermediate images only when its message changes; the next image may succeed again.
-  void publish(const RenderResult& result, const ImageDenoiser& filter, bool last) {
+  void publish(const RenderResult& result, const ImageDenoiser& filter, const Rung& rung,
+               bool last) {
     const Stopwatch watch;
     try {
       const std::optional<FilteredImage> filtered = filter.apply(result);
-      writeImages(m_options, *m_scene, result, filtered, m_values.arguments(), m_outputs);
-      m_outputs.commit(Durability::none); // the next image follows soon
-      writeImageEvent(result, denoisedNoise(filtered), last);
+      if (m_monitor.stop)
+        return;
+      if (m_frame)
+        publishFrame(*m_frame, makeFrameInfo(last), *m_scene, result, filtered, m_options.display);
+      if (m_hasFiles && rung.isFull()) {
+        writeImages(m_options, *m_scene, result, filtered, m_values.arguments(), m_outputs);
+        m_outputs.commit(Durability::none); // the next image follows soon
+      }
+      writeImageEvent(result, denoisedNoise(filtered), rung, last);
     } catch (const Error& error) {
       if (last || m_failure != error.what())
         writeErrorEvent(m_change.id, error.message());
@@ -126,19 +209,32 @@ private:
     m_published.emplace();
   }
 
+  FrameInfo makeFrameInfo(bool last) const {
+    FrameInfo info;
+    if (m_change.id.is_number_integer())
+      info.request = m_change.id.get<std::int64_t>();
+    info.fullWidth = m_options.scene.width;
+    info.fullHeight = m_options.scene.height;
+    info.isLast = last;
+    return info;
+  }
+
   void writeImageEvent(const RenderResult& result, const std::optional<double>& filtered,
-                       bool last) {
+                       const Rung& rung, bool last) {
     nlohmann::ordered_json event = {{"event", "picture"}, {"id", m_change.id}};
+    event["scale"] = rung.scale;
     event["samples"] = result.finishedSamples;
     event["noise"] = result.film.noise(); // null: infinite
     if (filtered)
       for (const char* key : {"noiseDenoised", "noiseFiltered"}) // and its name in version 0.1
         event[key] = *filtered;
     event["seconds"] = m_change.age.seconds();
+    event["startSeconds"] = m_startSeconds;
     event["target"] = result.target;
     event["done"] = last;
-    for (const std::filesystem::path& path : m_options.outputs)
-      event["files"].push_back(path.string());
+    if (m_hasFiles && rung.isFull())
+      for (const std::filesystem::path& path : m_options.outputs)
+        event["files"].push_back(path.string());
     std::vector<std::string> warnings = {};
     for (const Message& message : m_scene->warnings())
       warnings.push_back(composeMessage(message));
@@ -155,12 +251,16 @@ private:
   RenderOptions m_options;
   ServeChange m_change; ///< last one applied
   Outputs& m_outputs;
+  const bool m_hasFiles;            ///< images at full resolution are also written to files
+  std::optional<FrameFile> m_frame; ///< nullopt: no frame file
   RenderMonitor m_monitor;
   ServeInput m_input;
-  std::optional<PreparedScene> m_scene;
-  bool m_isComplete = false;            ///< true: the scene's image is finished
-  bool m_hasGpuFailed = false;          ///< true: the CPU renders all further images
-  std::optional<Stopwatch> m_published; ///< since the scene's last image; nullopt: none yet
+  std::map<int, PreparedScene> m_scenes; ///< last scene of each size, by Rung::scale
+  std::optional<PreparedScene> m_scene;  ///< newest one
+  bool m_isComplete = false;             ///< true: the scene's image is finished
+  bool m_hasGpuFailed = false;           ///< true: the CPU renders all further images
+  double m_startSeconds = 0.0; ///< from the arrival of the last change to the end of other work
+  std::optional<Stopwatch> m_published; ///< since the last image of this size; nullopt: none yet
   double m_publishSeconds = 0.0;        ///< duration of the last publish(), s
   std::string m_failure;                ///< last reported failure to write an image of this scene
   std::set<std::string> m_warned;
@@ -170,6 +270,11 @@ private:
 
 // Built on first use, since renderSyntax is initialized in another source file.
 const CommandSyntax& serveSyntax() {
+  static const std::vector<Option> options = [] {
+    std::vector<Option> all(std::begin(serveTable), std::end(serveTable));
+    all.insert(all.end(), renderSyntax.options.begin(), renderSyntax.options.end());
+    return all;
+  }();
   static const CommandSyntax syntax = {
       "serve",
       "Keeps a scene loaded and renders it again after every change, for previews. Reads changes "
@@ -179,7 +284,7 @@ const CommandSyntax& serveSyntax() {
       "{\"event\": \"picture\" or \"error\", \"id\": 7, ...}. Ends with its input. Accepts the "
       "options of fenestra render; unless given, --device is auto.",
       renderSyntax.positionals,
-      renderSyntax.options,
+      options,
       {{{"stats-json", "returnparameterfile", "progress", "quiet", "verbose", "xml", "echo"},
         "not for serve, which reports on standard output; omit it"},
        {{"surface", "checkpoint", "shard"},
@@ -195,12 +300,19 @@ int serveCommand(int argc, char** argv, int first) {
   if (!given)
     return 0;
   configureMachine(*given);
-  const RenderJob start = makeRenderJob(*given);
+  OptionValues values = *given;
+  const std::filesystem::path frame = values.text("frame").value_or("");
+  values.remove("frame"); // no option of an image
+  RenderJob start = makeRenderJob(values);
+  if (!frame.empty() && !values.has("output"))
+    start.options.outputs.clear();
   // Never destroyed: the reading thread uses both until the process ends.
   Outputs& outputs = *new Outputs;
   declareOutputs(start.options, outputs);
+  if (!frame.empty())
+    outputs.add(frame);
   checkMemory(start.options.scene);
-  Server& server = *new Server(start, outputs);
+  Server& server = *new Server(start, frame, outputs);
   server.run();
 }
 

@@ -64,11 +64,16 @@ void addExpected(Image& image, const FeatureBuffers& features) {
     image.channels[std::string("expected.albedo.") + "RGB"[c]] = features.albedo[c];
     image.channels[std::string("expected.normal.") + "XYZ"[c]] = features.normal[c];
   }
-  Plane& depth = image.channels["expected.Z"];
+  image.channels["expected.Z"] = makeExpectedDepth(features);
+}
+
+Plane makeExpectedDepth(const FeatureBuffers& features) {
+  Plane depth;
   // `hit`: probability of a collision; `depth` is multiplied by it.
   for (std::size_t i = 0; i < features.hit.size(); ++i)
     depth.push_back(features.hit[i] > 0.0F ? features.depth[i] / features.hit[i]
                                            : std::numeric_limits<float>::infinity());
+  return depth;
 }
 
 Image makeFilteredImage(const FilteredImage& result, int width, int height) {

@@ -27,6 +27,8 @@ void addDenoised(Image& image, const FilteredImage& result);
 /// Adds the channels expected.*: albedo and normal as means over all rays, like the film's; Z, like
 /// the channel Z, as the mean over the rays that hit something, else infinity.
 void addExpected(Image& image, const FeatureBuffers& features);
+/// Channel expected.Z.
+Plane makeExpectedDepth(const FeatureBuffers& features);
 /// Image with the channels R, G, B and A of the denoised image.
 Image makeFilteredImage(const FilteredImage& result, int width, int height);
 

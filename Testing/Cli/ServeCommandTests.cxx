@@ -1,44 +1,22 @@
 // `fenestra serve`: images after changes, error events for invalid lines, and how it ends.
 
-#include "CommandTesting.h"
 #include "RunSettings.h"
+#include "ServeTesting.h"
 #include "files/images/ImageReader.h"
-
-#include <nlohmann/json.hpp>
 
 #include <csignal>
 
 namespace fenestra::core::ServeCommandTests {
 namespace {
 
-using nlohmann::json;
-
 /// Limit of the processor time in seconds of an end: 2, more for slow builds. About 0.1 are needed.
 const double cpuLimit = 2.0 * static_cast<double>(testing::slowdownFactor());
 
-class ServeCommand : public SmallScene {
+class ServeCommand : public ServeTest {
 protected:
   static Arguments makeArguments(const std::string& size = "16x16",
                                  const std::string& samples = "4") {
     return {"serve", "volume.nrrd", "--size", size, "--samples", samples, "--output", "a.exr"};
-  }
-
-  static std::vector<json> readEvents(const Process& process) {
-    std::vector<json> all;
-    std::istringstream lines(process.output());
-    for (std::string line; std::getline(lines, line);)
-      all.push_back(json::parse(line));
-    return all;
-  }
-  /// Waits for the final image of a change; `id`: as JSON, null for the image before any change.
-  static bool waitForImage(const Process& process, const std::string& id) {
-    return process.waitForOutput("\"picture\",\"id\":" + id + ",[^\n]*\"done\":true[^\n]*\n");
-  }
-  /// Waits for the error event of a change, or of a line without a valid id (null).
-  static bool waitForError(const Process& process, const std::string& id,
-                           const std::string& message) {
-    return process.waitForOutput("\"error\",\"id\":" + id + ",\"message\":\"[^\n]*" + message +
-                                 "[^\n]*\",\"code\":\"[a-z-]+\"");
   }
 
   /// Image of `fenestra volume.nrrd …` with these options.

@@ -71,16 +71,21 @@ bool isOpaque(const std::vector<float>& rgba) {
   return true;
 }
 
-/// Scales values in [0, 1] to the full range of T; drops alpha if all pixels are opaque.
+/// Scales a value in [0, 1] to the full range of T.
 template <typename T>
-std::vector<T> quantize(const std::vector<float>& rgba) {
+T quantize(float value) {
+  return static_cast<T>(std::lround(static_cast<double>(value) * std::numeric_limits<T>::max()));
+}
+
+/// Quantizes interleaved RGBA; drops alpha if all pixels are opaque.
+template <typename T>
+std::vector<T> quantizePixels(const std::vector<float>& rgba) {
   const bool opaque = isOpaque(rgba);
   std::vector<T> values;
   values.reserve(rgba.size());
   for (std::size_t i = 0; i < rgba.size(); ++i)
     if (!opaque || i % 4 != 3)
-      values.push_back(static_cast<T>(
-          std::lround(static_cast<double>(rgba[i]) * std::numeric_limits<T>::max())));
+      values.push_back(quantize<T>(rgba[i]));
   return values;
 }
 
@@ -137,7 +142,7 @@ std::string makeComment(const Image& image, const Display& display) {
 
 std::string encodePngPixels(const Image& image, const std::vector<float>& rgba,
                             const std::string& comment) {
-  const std::vector<std::uint8_t> values = quantize<std::uint8_t>(rgba);
+  const std::vector<std::uint8_t> values = quantizePixels<std::uint8_t>(rgba);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
@@ -172,7 +177,7 @@ void setTiffFields(TIFF* tiff, const Image& image, bool opaque, const std::strin
 
 std::string encodeTiff(const Image& image, const std::vector<float>& rgba,
                        const std::string& comment) {
-  std::vector<std::uint16_t> values = quantize<std::uint16_t>(rgba);
+  std::vector<std::uint16_t> values = quantizePixels<std::uint16_t>(rgba);
   const std::size_t rowLength = values.size() / static_cast<std::size_t>(image.height);
   TextWriter stream;
   const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFStreamOpen("image", &stream), TIFFClose);
@@ -210,17 +215,6 @@ std::string encodeSlice(const Image& image, const ImagePlane& plane,
                           .encoding = NrrdHeader::Encoding::raw,
                           .fields = std::move(fields)};
   return sealProvenanceTag(encodeNrrd(header, asBytes(values)));
-}
-
-/// Interleaves the channels `prefix` + R, G, B and A; a missing A is 1.
-std::vector<float> interleaveRgba(const Image& image, const std::string& prefix = "") {
-  const std::size_t count = image.channels.at(prefix + "R").size();
-  std::vector<float> values(4 * count, 1.0f);
-  for (std::size_t c = 0; c < 4; ++c)
-    if (const std::vector<float>* channel = image.find(prefix + "RGBA"[c]))
-      for (std::size_t i = 0; i < count; ++i)
-        values[4 * i + c] = (*channel)[i];
-  return values;
 }
 
 /// Path of an extra file beside a `.nrrd`.
@@ -262,6 +256,24 @@ void requireColor(const Image& image, const std::filesystem::path& path) {
 }
 
 } // namespace
+
+std::vector<float> interleaveRgba(const Image& image, const std::string& prefix) {
+  const std::size_t count = image.channels.at(prefix + "R").size();
+  std::vector<float> values(4 * count, 1.0f);
+  for (std::size_t c = 0; c < 4; ++c)
+    if (const std::vector<float>* channel = image.find(prefix + "RGBA"[c]))
+      for (std::size_t i = 0; i < count; ++i)
+        values[4 * i + c] = (*channel)[i];
+  return values;
+}
+
+std::vector<std::uint8_t> makeDisplayBytes(const Image& image, const ImagePlane& plane,
+                                           const Display& display) {
+  const std::vector<float> pixels = makeDisplayPixels(image, plane, display);
+  std::vector<std::uint8_t> bytes(pixels.size());
+  std::ranges::transform(pixels, bytes.begin(), quantize<std::uint8_t>);
+  return bytes;
+}
 
 std::vector<float> makeDisplayPixels(const Image& image, const ImagePlane& plane,
                                      const Display& display) {

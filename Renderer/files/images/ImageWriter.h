@@ -5,6 +5,7 @@
 #include "image/Image.h"
 #include "io/Outputs.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -30,6 +31,11 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
 /// Requires R, G, B.
 std::vector<float> makeDisplayPixels(const Image& image, const ImagePlane& plane,
                                      const Display& display);
+/// The same in 8 bits, as in a `.png` file, always with alpha.
+std::vector<std::uint8_t> makeDisplayBytes(const Image& image, const ImagePlane& plane,
+                                           const Display& display);
+/// Interleaved R, G, B and A (1 if missing), with this prefix of the channel names.
+std::vector<float> interleaveRgba(const Image& image, const std::string& prefix = "");
 /// The same as the bytes of a `.png` file.
 std::string encodePng(const Image& image, const ImagePlane& plane, const Display& display);
 
