@@ -2,8 +2,15 @@
 
 #include "FenestraFlags.h"
 
+#include <QDir>
 #include <QJsonArray>
 #include <QJsonDocument>
+
+#include <stdexcept>
+
+namespace {
+constexpr const char* frameFile = "preview.frame";
+} // namespace
 
 qFenestraPreview::qFenestraPreview(QObject* parent) : QObject(parent) {
   m_delay.setSingleShot(true);
@@ -18,13 +25,16 @@ void qFenestraPreview::start(const QString& program, const QStringList& argument
   connect(m_child, &qFenestraProgram::lineReceived, this, &qFenestraPreview::readEvent);
   connect(m_child, &qFenestraProgram::ended, this, &qFenestraPreview::ended);
   connect(m_child, &QObject::destroyed, [files] {}); // the connection keeps the files alive
-  m_child->run(program, QStringList{"serve"} + arguments, folder);
+  m_file.setFileName(QDir(folder).filePath(frameFile));
+  m_child->run(program, QStringList{"serve", QString("--frame=%1").arg(frameFile)} + arguments,
+               folder);
 }
 
 void qFenestraPreview::stop() {
   m_delay.stop();
   m_changes = {};
   m_isWaiting = false;
+  closeFrame();
   if (!m_child)
     return;
   qFenestraProgram* const child = m_child;
@@ -78,12 +88,39 @@ void qFenestraPreview::readEvent(const QString& line) {
   if (reply["event"] != "picture")
     return;
   qFenestraPreviewImage image;
-  const QJsonArray files = reply["files"].toArray();
-  for (const QJsonValue& file : files)
-    image.files << file.toString();
+  try {
+    image.frame = readFrame();
+  } catch (const std::runtime_error& error) {
+    return emit refused(error.what());
+  }
+  if (!image.frame)
+    return;
   image.samples = reply["samples"].toInt();
   image.noise = reply["noiseDenoised"].toDouble(reply["noise"].toDouble(-1.0));
   image.seconds = reply["seconds"].toDouble();
   image.done = reply["done"].toBool();
   emit refreshed(image);
+}
+
+std::shared_ptr<const SlicerExport::Frame> qFenestraPreview::readFrame() {
+  using State = SlicerExport::FrameState;
+  const auto frame = std::make_shared<SlicerExport::Frame>();
+  State state = State::outgrown;
+  for (int tries = 0; state == State::outgrown && tries < 2; ++tries) {
+    if (!m_memory && m_file.open(QIODevice::ReadOnly)) {
+      m_memoryBytes = m_file.size(); // the file may grow
+      m_memory = m_file.map(0, m_memoryBytes);
+    }
+    if (!m_memory)
+      throw std::runtime_error("The renderer's image could not be read.");
+    state = SlicerExport::readFrame(m_memory, static_cast<std::size_t>(m_memoryBytes), *frame);
+    if (state == State::outgrown)
+      closeFrame();
+  }
+  return state == State::complete ? frame : nullptr;
+}
+
+void qFenestraPreview::closeFrame() {
+  m_file.close(); // unmaps
+  m_memory = nullptr;
 }

@@ -2,8 +2,10 @@
 // Preview that follows the user's changes: sends them to `fenestra serve`, and receives images of
 // increasing quality.
 
+#include "FenestraFrame.h"
 #include "qFenestraProgram.h"
 
+#include <QFile>
 #include <QJsonObject>
 #include <QTimer>
 
@@ -12,7 +14,7 @@
 #include <string>
 
 struct qFenestraPreviewImage {
-  QStringList files;
+  std::shared_ptr<const SlicerExport::Frame> frame;
   int samples = 0;      ///< per pixel
   double noise = -1.0;  ///< relative noise; negative: not known yet
   double seconds = 0.0; ///< time since the change
@@ -25,16 +27,14 @@ class qFenestraPreview : public QObject {
 public:
   explicit qFenestraPreview(QObject* parent = nullptr);
 
-  /// Starts `fenestra serve arguments…` and stops the running preview. `files` is kept alive until
-  /// the child has ended, even after stop().
+  /// Starts `fenestra serve arguments…` in the folder and stops the running preview. `files` is
+  /// kept alive until the child has ended, even after stop().
   void start(const QString& program, const QStringList& arguments, const QString& folder,
              const std::shared_ptr<const void>& files = {});
   /// Returns immediately. The child ends on its own, at the latest with this object; its further
   /// output is ignored.
   void stop();
   bool running() const { return m_child && m_child->state() != QProcess::NotRunning; }
-  /// Folder to which the image files are relative.
-  QString folder() const { return m_child ? m_child->workingDirectory() : QString(); }
 
   /// Changes flags, with values as `fenestra serve` takes them; later values win. Each change ends
   /// the render of the one before. It is therefore sent once there is an image of that one, so that
@@ -53,10 +53,16 @@ signals:
 private:
   void sendChanges();
   void readEvent(const QString& line);
+  /// Null: it is being replaced; another event follows.
+  std::shared_ptr<const SlicerExport::Frame> readFrame();
+  void closeFrame();
 
   qFenestraProgram* m_child = nullptr; ///< null: no server
-  QTimer m_delay;                      ///< 0 ms; merges the changes of one action
-  QJsonObject m_changes;               ///< not sent yet
-  int m_lastId = 0;                    ///< number of changes sent; also the id of the last one
-  bool m_isWaiting = false;            ///< for the first reply to the last change
+  QFile m_file;                        ///< the images of the server, mapped
+  const uchar* m_memory = nullptr;     ///< of the file; null: not mapped
+  qint64 m_memoryBytes = 0;
+  QTimer m_delay;           ///< 0 ms; merges the changes of one action
+  QJsonObject m_changes;    ///< not sent yet
+  int m_lastId = 0;         ///< number of changes sent; also the id of the last one
+  bool m_isWaiting = false; ///< for the first reply to the last change
 };

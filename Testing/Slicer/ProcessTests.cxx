@@ -287,9 +287,7 @@ protected:
   }
 
   void start(const char* samples) {
-    preview.start(program,
-                  {"volume.nrrd", "--size", "16x16", "--samples", samples, "--output", "p.png"},
-                  path());
+    preview.start(program, {"volume.nrrd", "--size", "16x16", "--samples", samples}, path());
   }
   bool waitForDone() {
     return waitFor([this] { return !images.empty() && images.back().done; });
@@ -305,8 +303,9 @@ TEST_F(SlicerPreview, FastChangesAreSentAsOne) {
   start("8");
   ASSERT_TRUE(waitForDone());
   EXPECT_EQ(images.back().samples, 8);
-  EXPECT_EQ(images.back().files, QStringList{"p.png"});
-  EXPECT_TRUE(exists("p.png"));
+  ASSERT_TRUE(images.back().frame);
+  EXPECT_EQ(images.back().frame->width, 16);
+  EXPECT_TRUE(images.back().frame->isLast);
   images.clear();
   // Of fast changes, one is sent, with the last value of each flag.
   for (const char* view : {"left", "right", "superior"}) {
@@ -322,8 +321,7 @@ TEST_F(SlicerPreview, FastChangesAreSentAsOne) {
 
 /// Changes that come faster than an image is rendered, like those of a dragged camera.
 TEST_F(SlicerPreview, ImagesArriveDuringFastChanges) {
-  preview.start(program, {"volume.nrrd", "--size=256x256", "--samples=100000000", "--output=p.png"},
-                path());
+  preview.start(program, {"volume.nrrd", "--size=256x256", "--samples=100000000"}, path());
   ASSERT_TRUE(waitFor([this] { return !images.empty(); }));
   images.clear();
   int changes = 0;
@@ -334,6 +332,20 @@ TEST_F(SlicerPreview, ImagesArriveDuringFastChanges) {
   drag.start(1);
   EXPECT_TRUE(waitFor([&] { return images.size() > 2; })) << refusals.join(" ").toStdString();
   EXPECT_GT(changes, 3);
+}
+
+/// The file of the images grows, and is mapped again.
+TEST_F(SlicerPreview, LargerImagesFollowSmallerOnes) {
+  start("1");
+  ASSERT_TRUE(waitForDone());
+  for (const int size : {90, 420, 40, 600}) {
+    images.clear();
+    preview.change({{"size", QString("%1x%1").arg(size)}});
+    ASSERT_TRUE(waitForDone()) << refusals.join(" ").toStdString();
+    EXPECT_EQ(images.back().frame->width, size);
+    EXPECT_EQ(images.back().frame->fullHeight, size);
+  }
+  EXPECT_TRUE(refusals.isEmpty());
 }
 
 TEST_F(SlicerPreview, RefusedChangeKeepsThePreviewRunning) {
@@ -364,8 +376,8 @@ TEST_F(SlicerPreview, StopReturnsImmediately) {
 TEST_F(SlicerPreview, FilesAreKeptUntilTheChildHasEnded) {
   auto files = std::make_shared<int>();
   const std::weak_ptr<int> held = files;
-  preview.start(program, {"volume.nrrd", "--size=16x16", "--samples=100000000", "--output=p.png"},
-                path(), std::move(files));
+  preview.start(program, {"volume.nrrd", "--size=16x16", "--samples=100000000"}, path(),
+                std::move(files));
   ASSERT_TRUE(waitFor([this] { return !images.empty(); }));
   preview.stop();
   EXPECT_FALSE(held.expired());
