@@ -28,24 +28,26 @@ slicerMacroBuildLoadableModule(
   EXPORT_DIRECTIVE "Q_SLICER_QTMODULES_${MODULE_NAME_UPPER}_EXPORT"
   INCLUDE_DIRECTORIES ${CMAKE_CURRENT_SOURCE_DIR}/Logic ${CMAKE_CURRENT_BINARY_DIR}/Logic
                       ${CMAKE_CURRENT_SOURCE_DIR}/MRML ${CMAKE_CURRENT_BINARY_DIR}/MRML
-                      ${CMAKE_CURRENT_SOURCE_DIR}/Widgets ${FENESTRA_PORTABLE_INCLUDE_DIR}
+                      ${CMAKE_CURRENT_SOURCE_DIR}/View ${CMAKE_CURRENT_SOURCE_DIR}/Widgets
+                      ${FENESTRA_PORTABLE_INCLUDE_DIR}
                       ${qSlicerSubjectHierarchyModuleWidgets_INCLUDE_DIRS}
                       ${vtkSlicerFenestraModuleMRMLDisplayableManager_INCLUDE_DIRS}
-  SRCS qSlicerFenestraModule.cxx qSlicerFenestraModule.h
+  SRCS qSlicerFenestraLiveView.cxx qSlicerFenestraLiveView.h
+       qSlicerFenestraModule.cxx qSlicerFenestraModule.h
        qSlicerFenestraModuleWidget.cxx qSlicerFenestraModuleWidget.h
        qSlicerFenestraResults.cxx qSlicerFenestraResults.h
        qSlicerFenestraSession.cxx qSlicerFenestraSession.h qSlicerFenestraSessionOpening.cxx
        qSlicerFenestraSessionPreview.cxx
        qSlicerSubjectHierarchyFenestraPlugin.cxx qSlicerSubjectHierarchyFenestraPlugin.h
        ${widget_sources}
-  MOC_SRCS qSlicerFenestraModule.h qSlicerFenestraModuleWidget.h qSlicerFenestraSession.h
-           qSlicerSubjectHierarchyFenestraPlugin.h
+  MOC_SRCS qSlicerFenestraLiveView.h qSlicerFenestraModule.h qSlicerFenestraModuleWidget.h
+           qSlicerFenestraSession.h qSlicerSubjectHierarchyFenestraPlugin.h
            ${widget_moc_sources}
   UI_SRCS Resources/UI/qSlicerFenestraModuleWidget.ui ${widget_ui_sources}
   TARGET_LIBRARIES vtkSlicer${MODULE_NAME}ModuleLogic
                    vtkSlicer${MODULE_NAME}ModuleMRMLDisplayableManager
                    qSlicerSubjectHierarchyModuleWidgets FenestraPortable
-                   FenestraProcess FenestraScene
+                   FenestraProcess FenestraScene FenestraView
   RESOURCES Resources/qSlicerFenestraModule.qrc
   WITH_GENERIC_TESTS)
 

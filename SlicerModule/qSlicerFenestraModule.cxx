@@ -1,5 +1,6 @@
 #include "qSlicerFenestraModule.h"
 
+#include "qSlicerFenestraLiveView.h"
 #include "qSlicerFenestraModuleWidget.h"
 #include "qSlicerFenestraSession.h"
 #include "qSlicerSubjectHierarchyFenestraPlugin.h"
@@ -30,6 +31,7 @@ vtkSlicerFenestraLogic* qSlicerFenestraModule::fenestraLogic() {
 void qSlicerFenestraModule::setup() {
   Superclass::setup();
   m_session = new qSlicerFenestraSession(fenestraLogic(), program(), this);
+  new qSlicerFenestraLiveView(fenestraLogic(), m_session); // the session owns it
   qSlicerSubjectHierarchyPluginHandler::instance()->registerPlugin(
       new qSlicerSubjectHierarchyFenestraPlugin(fenestraLogic()));
   vtkMRMLThreeDViewDisplayableManagerFactory::GetInstance()->RegisterDisplayableManager(

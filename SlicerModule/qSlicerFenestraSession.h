@@ -61,8 +61,12 @@ public:
   /// Queries the materials that the renderer chooses for the segments; `materialsReceived` reports
   /// them. Unchanged segments are not queried again.
   void queryMaterials(const std::vector<SlicerExport::Segment>& segments);
+  using Flags = std::map<std::string, std::string>;
   /// Previews the settings from now on; null: ends the preview.
   void preview(vtkMRMLFenestraRenderNode* settings);
+  /// Previews settings with other flags for camera, size and background from now on, instead of
+  /// preview(); null: ends that.
+  void previewView(vtkMRMLFenestraRenderNode* settings, const Flags& view);
 
   /// Generates the synthetic sample knee, then calls `then` with the path of its scene or with an
   /// error message. `sampleProgressed` reports the time until then. Ignored while one is generated.
@@ -132,7 +136,7 @@ private:
   void endRender(int id, const qFenestraOutcome& outcome);
 
   void updatePreview();
-  using Flags = std::map<std::string, std::string>;
+  vtkMRMLFenestraRenderNode* previewed() const { return m_viewed ? m_viewed : m_previewed; }
   void startPreview(const SlicerExport::Contents& contents, const Flags& flags);
   Flags adaptFlags(Flags flags, const SlicerExport::Contents& contents) const;
   QString writePropertyFile(const SlicerExport::Contents& contents) const;
@@ -169,8 +173,10 @@ private:
 
   qFenestraPreview m_preview;
   QTimer m_refreshTimer; ///< merges changes; not restarted by further ones
-  vtkWeakPointer<vtkMRMLFenestraRenderNode> m_previewed;
-  std::string m_previewKey; ///< key of the data in the preview's scene
+  vtkWeakPointer<vtkMRMLFenestraRenderNode> m_previewed; ///< by the panel; null: none
+  vtkWeakPointer<vtkMRMLFenestraRenderNode> m_viewed;    ///< in a 3D view; null: none
+  Flags m_viewFlags;                                     ///< of that view
+  std::string m_previewKey;                              ///< key of the data in the preview's scene
   QString m_previewFolder;
   QJsonObject m_sentFlags;
   bool m_starting = false;

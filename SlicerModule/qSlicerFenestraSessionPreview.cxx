@@ -46,26 +46,32 @@ std::string scaleToPreview(const std::string& size) {
 
 void qSlicerFenestraSession::preview(Node* settings) {
   m_previewed = settings;
-  if (settings)
-    refresh();
-  else
+  if (!previewed())
     m_preview.stop();
+  refresh();
+}
+
+void qSlicerFenestraSession::previewView(Node* settings, const Flags& view) {
+  m_viewed = settings;
+  m_viewFlags = view;
+  preview(m_previewed);
 }
 
 void qSlicerFenestraSession::refresh() {
-  if (m_previewed && !m_refreshTimer.isActive())
+  if (previewed() && !m_refreshTimer.isActive())
     m_refreshTimer.start();
 }
 
 void qSlicerFenestraSession::updatePreview() {
-  if (!m_previewed || !m_previewed->GetScene() || isRendering())
+  Node* const settings = previewed();
+  if (!settings || !settings->GetScene() || isRendering())
     return;
   if (m_starting)
     return m_refreshTimer.start(); // sends the changes later
   try {
     const SlicerExport::Contents contents =
-        m_logic->Snapshot(m_previewed, m_files->folder.path().toStdString());
-    const Flags flags = adaptFlags(m_logic->GetFlags(m_previewed), contents);
+        m_logic->Snapshot(settings, m_files->folder.path().toStdString());
+    const Flags flags = adaptFlags(m_logic->GetFlags(settings), contents);
     if (!m_preview.running() || makeDataKey(contents) != m_previewKey)
       return startPreview(contents, flags);
     sendToPreview(qFenestraPreview::toJson(flags));
@@ -80,9 +86,9 @@ void qSlicerFenestraSession::startPreview(const SlicerExport::Contents& contents
   m_previewKey = makeDataKey(contents);
   write(contents, [this, flags, files = m_files](const QString& scene, const QString& message) {
     m_starting = false;
-    if (!message.isEmpty() || !m_previewed)
+    if (!message.isEmpty() || !previewed())
       return message.isEmpty() ? void() : emit previewRefused(message);
-    QStringList arguments = {scene, "--output=preview.png"};
+    QStringList arguments = {scene};
     for (const std::string& argument : SlicerExport::toArguments(flags))
       arguments << QString::fromStdString(argument);
     m_sentFlags = qFenestraPreview::toJson(flags);
@@ -105,6 +111,12 @@ qSlicerFenestraSession::adaptFlags(Flags flags, const SlicerExport::Contents& co
     flags.erase(name);
   flags["noise"] = "0.03";
   flags["size"] = scaleToPreview(flags["size"]);
+  if (m_viewed) {
+    for (const char* name : {"view", "scale", "angle"})
+      flags.erase(name);
+    for (const auto& [name, value] : m_viewFlags)
+      flags[name] = value;
+  }
   if (flags.count("transfer") == 0 && flags.count("preset") == 0 && !contents.property.empty())
     flags["transfer"] = writePropertyFile(contents).toStdString();
   return flags;
@@ -136,7 +148,7 @@ void qSlicerFenestraSession::sendToPreview(const QJsonObject& flags) {
 }
 
 void qSlicerFenestraSession::showPreview(const qFenestraPreviewImage& picture) {
-  const QImage image(m_preview.folder() + "/" + picture.files.value(0));
-  if (!image.isNull())
-    emit previewReceived(image, picture);
+  const SlicerExport::Frame& frame = *picture.frame;
+  const QImage image(frame.display.data(), frame.width, frame.height, QImage::Format_RGBA8888);
+  emit previewReceived(image.copy(), picture);
 }

@@ -205,10 +205,13 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetSegmentIDs(Node* render) {
 }
 
 vtkMRMLCameraNode* vtkSlicerFenestraLogic::GetFollowedCamera(Node* render) {
-  if (!render || !this->GetMRMLScene())
+  if (!render || !render->GetFlag("view").empty() || !render->GetFlag("position").empty())
     return nullptr;
-  auto* view = vtkMRMLViewNode::SafeDownCast(render->GetNodeReference(Node::ViewRole));
-  if (!view || !render->GetFlag("view").empty() || !render->GetFlag("position").empty())
+  return this->GetCamera(vtkMRMLViewNode::SafeDownCast(render->GetNodeReference(Node::ViewRole)));
+}
+
+vtkMRMLCameraNode* vtkSlicerFenestraLogic::GetCamera(vtkMRMLViewNode* view) {
+  if (!view || !this->GetMRMLScene())
     return nullptr;
   std::vector<vtkMRMLNode*> cameras;
   this->GetMRMLScene()->GetNodesByClass("vtkMRMLCameraNode", cameras);

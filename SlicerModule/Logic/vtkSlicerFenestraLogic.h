@@ -20,6 +20,7 @@ class vtkMRMLNode;
 class vtkMRMLScalarVolumeNode;
 class vtkMRMLSegmentationNode;
 class vtkMRMLSliceLogic;
+class vtkMRMLViewNode;
 class vtkMRMLVolumeNode;
 class vtkPolyData;
 
@@ -84,6 +85,10 @@ public:
   /// The same with another volume.
   vtkMRMLFenestraOpeningNode* OpenVolume(vtkMRMLScalarVolumeNode* volume);
   void CloseView();
+  /// Shows a path-traced image of the settings in their 3D view, or else the first one, while its
+  /// camera rests; it is refined until its noise is low. Null: there is no volume, the log says so.
+  vtkMRMLFenestraOpeningNode* ShowPhotorealistic(vtkMRMLFenestraRenderNode* settings);
+  void HidePhotorealistic();
   /// The scene's opened view, the first if there are several, visible or not; null: none.
   vtkMRMLFenestraOpeningNode* GetOpening();
   /// Why the 3D views cannot be opened with the settings' clip mode, or with the volume rendering's
@@ -91,6 +96,9 @@ public:
   static std::string FindOpeningProblem(vtkMRMLFenestraRenderNode* settings);
   /// True if the settings have a volume and a focus.
   static bool CanOpenView(vtkMRMLFenestraRenderNode* settings);
+
+  /// True if the settings have a volume.
+  static bool CanShowPhotorealistic(vtkMRMLFenestraRenderNode* settings);
 
   /// Writes the scene as the renderer would receive it into a folder, created if missing, and
   /// returns its path; empty: failed, the log says why.
@@ -127,6 +135,8 @@ public:
 
   /// Flag value of a plane of the Markups module; empty: no plane, or not placed yet.
   static std::string GetPlaneFlag(vtkMRMLNode* plane);
+  /// Camera of a 3D view; null: none.
+  vtkMRMLCameraNode* GetCamera(vtkMRMLViewNode* view);
   /// Camera of the node's 3D view; null: flags set the view.
   vtkMRMLCameraNode* GetFollowedCamera(vtkMRMLFenestraRenderNode* render);
   /// Command-line arguments for rendering the node, with the outputs that ReadResult reads.
@@ -166,6 +176,7 @@ protected:
   void OnMRMLNodeModified(vtkMRMLNode* node) override;
 
 private:
+  vtkMRMLFenestraOpeningNode* AddOpening(vtkMRMLFenestraRenderNode* settings);
   vtkMRMLFenestraRenderNode* Start(vtkMRMLFenestraRenderNode* settings, bool turntable, bool wait);
   vtkMRMLSliceLogic* GetPictureSliceLogic();
   SlicerExport::Matrix MoveOutsideVolume(vtkMRMLFenestraRenderNode* render,

@@ -64,13 +64,38 @@ Opening* vtkSlicerFenestraLogic::OpenView(Node* settings) {
     display = rendering->CreateDefaultVolumeRenderingNodes(volume);
   if (display)
     display->SetVisibility(1);
+  Opening* opening = this->AddOpening(settings);
+  opening->SetVisible(true);
+  return opening;
+}
+
+/// The scene's opened view, created if missing, with these settings.
+Opening* vtkSlicerFenestraLogic::AddOpening(Node* settings) {
   Opening* opening = this->GetOpening();
   if (!opening)
     opening = Opening::SafeDownCast(
-        scene->AddNewNodeByClass("vtkMRMLFenestraOpeningNode", "Opened view"));
+        this->GetMRMLScene()->AddNewNodeByClass("vtkMRMLFenestraOpeningNode", "Opened view"));
   opening->SetNodeReferenceID(Opening::SettingsRole, settings->GetID());
-  opening->SetVisible(true);
   return opening;
+}
+
+bool vtkSlicerFenestraLogic::CanShowPhotorealistic(Node* settings) {
+  return settings && FindVolume(settings);
+}
+
+Opening* vtkSlicerFenestraLogic::ShowPhotorealistic(Node* settings) {
+  if (!this->GetMRMLScene() || !CanShowPhotorealistic(settings)) {
+    vtkErrorMacro("ShowPhotorealistic: the settings have no volume");
+    return nullptr;
+  }
+  Opening* opening = this->AddOpening(settings);
+  opening->SetPhotorealistic(true);
+  return opening;
+}
+
+void vtkSlicerFenestraLogic::HidePhotorealistic() {
+  if (Opening* opening = this->GetOpening())
+    opening->SetPhotorealistic(false);
 }
 
 Opening* vtkSlicerFenestraLogic::OpenSegment(vtkMRMLSegmentationNode* segmentation,

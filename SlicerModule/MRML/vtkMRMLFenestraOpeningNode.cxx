@@ -18,6 +18,7 @@ void vtkMRMLFenestraOpeningNode::ReadXMLAttributes(const char** atts) {
   Superclass::ReadXMLAttributes(atts);
   vtkMRMLReadXMLBeginMacro(atts);
   vtkMRMLReadXMLBooleanMacro(visible, Visible);
+  vtkMRMLReadXMLBooleanMacro(photorealistic, Photorealistic);
   vtkMRMLReadXMLEndMacro();
   this->EndModify(wasModifying);
 }
@@ -26,14 +27,18 @@ void vtkMRMLFenestraOpeningNode::WriteXML(ostream& of, int indent) {
   Superclass::WriteXML(of, indent);
   vtkMRMLWriteXMLBeginMacro(of);
   vtkMRMLWriteXMLBooleanMacro(visible, Visible);
+  vtkMRMLWriteXMLBooleanMacro(photorealistic, Photorealistic);
   vtkMRMLWriteXMLEndMacro();
 }
 
 void vtkMRMLFenestraOpeningNode::CopyContent(vtkMRMLNode* other, bool deep) {
   const int wasModifying = this->StartModify();
   Superclass::CopyContent(other, deep);
-  if (auto* opening = vtkMRMLFenestraOpeningNode::SafeDownCast(other)) // the focus is made again
+  // Focus and image are made again.
+  if (auto* opening = vtkMRMLFenestraOpeningNode::SafeDownCast(other)) {
     this->SetVisible(opening->GetVisible());
+    this->SetPhotorealistic(opening->GetPhotorealistic());
+  }
   this->EndModify(wasModifying);
 }
 
@@ -41,6 +46,7 @@ void vtkMRMLFenestraOpeningNode::PrintSelf(ostream& os, vtkIndent indent) {
   Superclass::PrintSelf(os, indent);
   vtkMRMLPrintBeginMacro(os, indent);
   vtkMRMLPrintBooleanMacro(Visible);
+  vtkMRMLPrintBooleanMacro(Photorealistic);
   vtkMRMLPrintStdStringMacro(Problem);
   vtkMRMLPrintEndMacro();
 }
@@ -51,6 +57,17 @@ vtkMRMLFenestraRenderNode* vtkMRMLFenestraOpeningNode::GetSettings() {
 
 bool vtkMRMLFenestraOpeningNode::HasFocus() const {
   return this->Triangles != nullptr;
+}
+
+bool vtkMRMLFenestraOpeningNode::HasImage() const {
+  return this->Image.image != nullptr;
+}
+
+void vtkMRMLFenestraOpeningNode::SetImage(const ViewImage& image) {
+  if (this->Image.image == image.image)
+    return;
+  this->Image = image;
+  this->Modified();
 }
 
 void vtkMRMLFenestraOpeningNode::SetProblem(const std::string& problem) {

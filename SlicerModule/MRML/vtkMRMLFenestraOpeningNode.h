@@ -4,6 +4,8 @@
 #include <vtkMRMLNode.h>
 
 #ifndef __VTK_WRAP__
+#include "FenestraViewCamera.h"
+#include "FenestraViewImage.h"
 #include "clip/portable/LiveSurface.h"
 
 #include <memory>
@@ -16,7 +18,7 @@
 class vtkMRMLFenestraRenderNode;
 
 /// \brief The opened view: the volume rendering in the 3D views, cut by the clipping surface of a
-/// focus.
+/// focus, and the path-traced image of one 3D view, shown while its camera rests.
 ///
 /// Volume, segmentation, focus and clipping are those of the settings (reference `settings`). Saved
 /// with the scene, but for the triangles of the focus, which are made again.
@@ -36,6 +38,13 @@ public:
   vtkGetMacro(Visible, bool);
   vtkSetMacro(Visible, bool);
   vtkBooleanMacro(Visible, bool);
+
+  /// True: one 3D view shows a path-traced image while its camera rests.
+  vtkGetMacro(Photorealistic, bool);
+  vtkSetMacro(Photorealistic, bool);
+  vtkBooleanMacro(Photorealistic, bool);
+  /// True while there is an image. Not saved.
+  bool HasImage() const;
 
   /// Null: none.
   vtkMRMLFenestraRenderNode* GetSettings();
@@ -61,6 +70,16 @@ public:
   const fenestra::core::BoxCorners& GetVolumeCorners() const {
     return this->VolumeCorners;
   }
+  /// The image of a 3D view, with the camera that it shows.
+  struct ViewImage {
+    std::shared_ptr<const FenestraViewImage> image; ///< null: none
+    FenestraViewCamera camera = {};
+    std::string viewID = {}; ///< of the 3D view's node
+  };
+  void SetImage(const ViewImage& image);
+  const ViewImage& GetImage() const {
+    return this->Image;
+  }
 #endif
 
 protected:
@@ -70,11 +89,13 @@ protected:
   void operator=(const vtkMRMLFenestraOpeningNode&) = delete;
 
   bool Visible = false;
+  bool Photorealistic = false;
   bool Preparing = false;
   std::string Problem;
 #ifndef __VTK_WRAP__
   Focus Triangles;
   fenestra::core::BoxCorners VolumeCorners = {};
+  ViewImage Image;
 #endif
 };
 

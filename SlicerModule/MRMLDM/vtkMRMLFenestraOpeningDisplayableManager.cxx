@@ -1,10 +1,12 @@
 #include "vtkMRMLFenestraOpeningDisplayableManager.h"
 
+#include "vtkFenestraImageProp.h"
 #include "vtkFenestraOpeningPass.h"
 #include "vtkMRMLFenestraOpeningNode.h"
 #include "vtkMRMLFenestraRenderNode.h"
 
 #include <vtkMRMLScene.h>
+#include <vtkMRMLViewNode.h>
 #include <vtkMRMLVolumeNode.h>
 
 #include <vtkCommand.h>
@@ -26,8 +28,10 @@ using Node = vtkMRMLFenestraRenderNode;
 Manager::vtkMRMLFenestraOpeningDisplayableManager() = default;
 
 Manager::~vtkMRMLFenestraOpeningDisplayableManager() {
-  if (this->GetRenderer() && this->StartObserver)
+  if (this->GetRenderer()) {
     this->GetRenderer()->RemoveObserver(this->StartObserver);
+    this->GetRenderer()->RemoveObserver(this->EndObserver);
+  }
   this->Observe(nullptr);
 }
 
@@ -39,6 +43,10 @@ bool Manager::IsOpened() {
   return this->Pass->GetVolume() != nullptr;
 }
 
+bool Manager::IsImageShown() {
+  return this->Image->GetRenderer() && this->Image->GetVisibility();
+}
+
 double Manager::GetSeconds() {
   return this->Pass->GetSeconds();
 }
@@ -48,6 +56,7 @@ void Manager::Create() {
   constexpr float beforeOthers = 1.0f;
   this->StartObserver = this->GetRenderer()->AddObserver(vtkCommand::StartEvent, this,
                                                          &Manager::OnStart, beforeOthers);
+  this->EndObserver = this->GetRenderer()->AddObserver(vtkCommand::EndEvent, this, &Manager::OnEnd);
   this->UpdateFromMRML();
 }
 
@@ -55,6 +64,7 @@ void Manager::UnobserveMRMLScene() {
   Superclass::UnobserveMRMLScene();
   this->Observe(nullptr);
   this->Pass->Detach();
+  this->Image->SetRenderer(nullptr);
 }
 
 void Manager::OnMRMLSceneNodeAdded(vtkMRMLNode* node) {
@@ -108,14 +118,32 @@ void Manager::UpdateFromMRML() {
     this->Pass->SetSubject(this->Opening->GetFocus(), this->Opening->GetVolumeCorners());
   }
   this->AttachPass();
+  this->UpdateImage();
 }
 
-/// The volume to cut; null: none. The volume rendering's displayable manager has a function for it,
-/// but that logs an error if there is none.
+/// Gives the image to the renderer of its view.
+void Manager::UpdateImage() {
+  vtkMRMLViewNode* view = this->GetMRMLViewNode();
+  const bool isOn = this->Settings && this->Opening->GetPhotorealistic() &&
+                    this->Opening->HasImage() && view && view->GetID() &&
+                    this->Opening->GetImage().viewID == view->GetID();
+  if (isOn != (this->Image->GetRenderer() != nullptr))
+    this->Image->SetRenderer(isOn ? this->GetRenderer() : nullptr);
+  if (isOn)
+    this->Image->SetImage(this->Opening->GetImage().image, this->Opening->GetImage().camera);
+  if (this->IsImageShown()) // else what lies outside the range is culled
+    this->GetRenderer()->ResetCameraClippingRange();
+}
+
+vtkVolume* Manager::FindVolumeToCut() {
+  const bool isCut = this->Settings && this->Opening->GetVisible() && this->Opening->HasFocus() &&
+                     this->Opening->GetProblem().empty();
+  return isCut ? this->FindVolume() : nullptr;
+}
+
+/// The settings' volume as it is rendered here; null: it is not. The volume rendering's displayable
+/// manager has a function for it, but that logs an error if there is none.
 vtkVolume* Manager::FindVolume() {
-  if (!this->Settings || !this->Opening->GetVisible() || !this->Opening->HasFocus() ||
-      !this->Opening->GetProblem().empty())
-    return nullptr;
   auto* node = vtkMRMLVolumeNode::SafeDownCast(this->Settings->GetNodeReference(Node::VolumeRole));
   vtkAlgorithmOutput* image = node ? node->GetImageDataConnection() : nullptr;
   vtkVolumeCollection* volumes = this->GetRenderer()->GetVolumes();
@@ -130,7 +158,7 @@ vtkVolume* Manager::FindVolume() {
 
 /// Returns whether the volume is another one than before.
 bool Manager::AttachPass() {
-  vtkVolume* volume = this->FindVolume();
+  vtkVolume* volume = this->FindVolumeToCut();
   if (volume == this->Pass->GetVolume())
     return false;
   if (volume)
@@ -143,4 +171,15 @@ bool Manager::AttachPass() {
 void Manager::OnStart() {
   if (this->AttachPass())
     this->RequestRender(); // the pass takes effect in the next frame
+  vtkVolume* volume = this->IsImageShown() ? this->FindVolume() : nullptr;
+  if (volume && volume->GetVisibility()) {
+    volume->SetVisibility(false);
+    this->Hidden = volume;
+  }
+}
+
+void Manager::OnEnd() {
+  if (this->Hidden)
+    this->Hidden->SetVisibility(true);
+  this->Hidden = nullptr;
 }

@@ -4,16 +4,19 @@
 #include <vtkMRMLAbstractThreeDViewDisplayableManager.h>
 
 #include <vtkNew.h>
+#include <vtkWeakPointer.h>
 
 #include "vtkSlicerFenestraModuleMRMLDisplayableManagerExport.h"
 
+class vtkFenestraImageProp;
 class vtkFenestraOpeningPass;
 class vtkMRMLFenestraOpeningNode;
 class vtkMRMLFenestraRenderNode;
 class vtkVolume;
 
 /// \brief Opens one 3D view: attaches the pass that cuts to the volume that the view's volume
-/// rendering draws, with the focus and the mode of the scene's opened view.
+/// rendering draws, with the focus and the mode of the scene's opened view. Draws the image of the
+/// view, too, instead of that volume, while the camera is the image's.
 ///
 /// The volume belongs to the volume rendering's displayable manager, which replaces it when its
 /// display changes. It is therefore looked up before every frame.
@@ -27,6 +30,8 @@ public:
 
   /// True if the view's next frame is cut.
   bool IsOpened();
+  /// True if the view's next frame shows an image.
+  bool IsImageShown();
   /// Duration of the computation of the last surface.
   double GetSeconds();
 
@@ -49,13 +54,18 @@ private:
   void Observe(vtkMRMLFenestraOpeningNode* opening);
   void RequestUpdate();
   bool AttachPass();
+  void UpdateImage();
   void OnStart();
+  void OnEnd();
   vtkVolume* FindVolume();
+  vtkVolume* FindVolumeToCut();
 
   vtkNew<vtkFenestraOpeningPass> Pass;
+  vtkNew<vtkFenestraImageProp> Image;
+  vtkWeakPointer<vtkVolume> Hidden; ///< between StartEvent and EndEvent: the image replaces it
   vtkMRMLFenestraOpeningNode* Opening = nullptr; ///< observed
   vtkMRMLFenestraRenderNode* Settings = nullptr; ///< observed
-  unsigned long StartObserver = 0;
+  unsigned long StartObserver = 0, EndObserver = 0;
 };
 
 #endif

@@ -12,7 +12,8 @@ class vtkMRMLFenestraOpeningNode;
 class vtkMRMLFenestraRenderNode;
 class vtkSlicerFenestraLogic;
 
-/// \brief Opens and closes the 3D views, and shows why they are not opened.
+/// \brief Opens and closes the 3D views, and shows why they are not opened. Shows and hides the
+/// path-traced image in a 3D view.
 class qSlicerFenestraOpening : public QWidget {
   Q_OBJECT
   QVTK_OBJECT
@@ -34,7 +35,7 @@ private:
   vtkSlicerFenestraLogic* m_logic = nullptr;
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_settings;
   vtkWeakPointer<vtkMRMLFenestraOpeningNode> m_opening;
-  QPushButton* m_button;
+  QPushButton *m_button, *m_image;
   QLabel* m_state;
 };
 

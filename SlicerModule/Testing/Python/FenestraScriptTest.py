@@ -123,6 +123,33 @@ class FenestraScriptTest(unittest.TestCase):
         self.assertTrue(wait_for(lambda: not manager.IsOpened()))
         self.assertFalse(opening.GetVisible())
 
+    def test_photorealistic_view(self):
+        """A 3D view shows an image of its camera while that rests, at the depth of the anatomy."""
+        self.assertEqual(self.errors(lambda: self.logic.ShowPhotorealistic(None)), (None, 1))
+        slicer.app.layoutManager().setLayout(slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView)
+        view = slicer.app.layoutManager().threeDWidget(0).threeDView()
+        manager = view.displayableManagerByClassName("vtkMRMLFenestraOpeningDisplayableManager")
+        process_events()
+        opening = self.logic.ShowPhotorealistic(self.settings)
+        self.assertTrue(wait_for(manager.IsImageShown))
+        renderer = view.renderWindow().GetRenderers().GetFirstRenderer()
+        view.forceRender()
+        width, height = renderer.GetSize()
+        cells, depths = vtk.vtkCellPicker(), vtk.vtkWorldPointPicker()
+        self.assertTrue(cells.Pick(width // 2, height // 2, 0, renderer))
+        depths.Pick(width // 2, height // 2, 0, renderer)
+        apart = vtk.vtkMath.Distance2BetweenPoints(cells.GetPickPosition(), depths.GetPickPosition()) ** 0.5
+        self.assertLess(apart, 2.0, (cells.GetPickPosition(), depths.GetPickPosition()))
+        renderer.GetActiveCamera().Azimuth(30)
+        self.assertFalse(manager.IsImageShown())
+        self.assertTrue(wait_for(manager.IsImageShown))
+        self.settings.SetFlag("exposure", "1")
+        self.assertTrue(wait_for(manager.IsImageShown))
+        self.settings.SetFlag("exposure", "")
+        self.logic.HidePhotorealistic()
+        self.assertTrue(wait_for(lambda: not manager.IsImageShown()))
+        self.assertFalse(opening.HasImage())
+
     def test_shown_image_is_complete(self):
         """One call shows the image's plane, completely and beside a 3D view of the same width."""
         slicer.app.layoutManager().setLayout(slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpView)

@@ -68,6 +68,7 @@ bool qSlicerFenestraTour::run() {
                         {"choose", &qSlicerFenestraTour::chooseCartilage},
                         {"turn", &qSlicerFenestraTour::turnCamera},
                         {"openView", &qSlicerFenestraTour::openView},
+                        {"restView", &qSlicerFenestraTour::restView},
                         {"render", &qSlicerFenestraTour::render},
                         {"stop", &qSlicerFenestraTour::stopRender},
                         {"clipping", &qSlicerFenestraTour::changeClipping},

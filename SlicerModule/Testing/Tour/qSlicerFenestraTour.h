@@ -23,6 +23,7 @@ private:
   int slowestTurn();
   void showVolumeRendering(bool visible);
   bool openView();
+  bool restView();
   bool render();
   bool stopRender();
   bool changeClipping();

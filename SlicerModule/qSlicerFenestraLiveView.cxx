@@ -1,0 +1,199 @@
+#include "qSlicerFenestraLiveView.h"
+
+#include "qSlicerFenestraSession.h"
+
+#include <qMRMLThreeDView.h>
+#include <qMRMLThreeDWidget.h>
+#include <qSlicerApplication.h>
+#include <qSlicerLayoutManager.h>
+
+#include <vtkMRMLCameraNode.h>
+#include <vtkMRMLDisplayableNode.h>
+#include <vtkMRMLViewNode.h>
+
+#include <vtkCommand.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace {
+
+using Node = vtkMRMLFenestraRenderNode;
+using SlicerExport::LiveState;
+
+/// The widget of a 3D view, or of the first one; null: there is none.
+qMRMLThreeDWidget* findWidget(vtkMRMLNode* view) {
+  const qSlicerApplication* application = qSlicerApplication::application();
+  qSlicerLayoutManager* layout = application ? application->layoutManager() : nullptr;
+  for (int i = 0; layout && i < layout->threeDViewCount(); ++i)
+    if (qMRMLThreeDWidget* widget = layout->threeDWidget(i);
+        widget && (!view || widget->mrmlViewNode() == view))
+      return widget;
+  return nullptr;
+}
+
+/// The view's camera and size as they are now.
+FenestraViewCamera takeCamera(vtkMRMLCameraNode* node, vtkRenderWindow* window) {
+  FenestraViewCamera camera = {};
+  node->GetPosition(camera.position.data());
+  node->GetFocalPoint(camera.focalPoint.data());
+  node->GetViewUp(camera.viewUp.data());
+  camera.isParallel = node->GetParallelProjection() != 0;
+  camera.viewAngle = node->GetViewAngle();
+  camera.parallelScale = node->GetParallelScale();
+  camera.width = window->GetSize()[0];
+  camera.height = window->GetSize()[1];
+  return camera;
+}
+
+/// True if the image is of this camera, up to the rounding of its text.
+bool isOf(const FenestraViewCamera& camera, const SlicerExport::Frame& frame) {
+  const auto isNear = [](double a, double b) {
+    return std::abs(a - b) <= 1e-9 * std::max({std::abs(a), std::abs(b), 1.0});
+  };
+  const auto areNear = [&](const auto& a, const auto& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), isNear);
+  };
+  return areNear(camera.position, frame.position) && areNear(camera.focalPoint, frame.target) &&
+         areNear(camera.viewUp, frame.up) && camera.isParallel == frame.isOrthographic &&
+         isNear(camera.isParallel ? camera.parallelScale : camera.viewAngle, frame.extent) &&
+         camera.width == frame.fullWidth && camera.height == frame.fullHeight;
+}
+
+} // namespace
+
+qSlicerFenestraLiveView::qSlicerFenestraLiveView(vtkSlicerFenestraLogic* logic,
+                                                 qSlicerFenestraSession* session)
+    : QObject(session), m_logic(logic), m_session(session) {
+  m_clock.start();
+  m_timer.setSingleShot(true);
+  connect(&m_timer, &QTimer::timeout, this, &qSlicerFenestraLiveView::advance);
+  connect(session, &qSlicerFenestraSession::previewReceived, this,
+          [this](const QImage&, const qFenestraPreviewImage& picture) { receive(picture); });
+  qvtkConnect(logic, vtkSlicerFenestraLogic::OpeningChangedEvent, this, SLOT(onOpeningChanged()));
+  onOpeningChanged();
+}
+
+void qSlicerFenestraLiveView::onOpeningChanged() {
+  vtkMRMLFenestraOpeningNode* opening = m_logic->GetOpening();
+  qvtkReconnect(m_opening, opening, vtkCommand::ModifiedEvent, this, SLOT(update()));
+  m_opening = opening;
+  update();
+}
+
+void qSlicerFenestraLiveView::update() {
+  Node* settings = m_opening && m_opening->GetPhotorealistic() ? m_opening->GetSettings() : nullptr;
+  observe(settings);
+  if (followView(settings)) {
+    if (!m_state.isOn())
+      m_state.turnOn(now());
+  } else if (m_state.isOn()) {
+    m_state.turnOff();
+    m_frame = nullptr;
+    m_session->previewView(nullptr, {});
+    if (m_opening)
+      m_opening->SetImage({});
+  }
+  advance();
+}
+
+/// Observes the nodes that the image shows, instead of those observed before.
+void qSlicerFenestraLiveView::observe(Node* settings) {
+  const auto reconnect = [this](auto& observed, auto* node, const auto& events) {
+    if (observed == node)
+      return;
+    for (const unsigned long event : events)
+      qvtkReconnect(observed, node, event, this, SLOT(onDataChanged()));
+    observed = node;
+  };
+  const auto& events = vtkSlicerFenestraLogic::GetDataEvents();
+  reconnect(m_settings, settings, std::vector<unsigned long>{vtkCommand::ModifiedEvent});
+  reconnect(m_volume, settings ? settings->GetNodeReference(Node::VolumeRole) : nullptr, events);
+  reconnect(m_segmentation, settings ? settings->GetNodeReference(Node::SegmentationRole) : nullptr,
+            events);
+}
+
+/// Observes the settings' view. Returns false if there is none.
+bool qSlicerFenestraLiveView::followView(Node* settings) {
+  qMRMLThreeDWidget* widget =
+      settings ? findWidget(settings->GetNodeReference(Node::ViewRole)) : nullptr;
+  vtkMRMLViewNode* view = widget ? widget->mrmlViewNode() : nullptr;
+  vtkMRMLCameraNode* camera = m_logic->GetCamera(view);
+  vtkRenderWindow* window = camera ? widget->threeDView()->renderWindow() : nullptr;
+  const bool isOther = m_camera != camera || m_window != window;
+  if (isOther) {
+    qvtkReconnect(m_camera, camera, vtkCommand::ModifiedEvent, this, SLOT(onViewChanged()));
+    qvtkReconnect(m_window, window, vtkCommand::WindowResizeEvent, this, SLOT(onViewChanged()));
+  }
+  m_view = view;
+  m_camera = camera;
+  m_window = window;
+  if (isOther && window && m_state.isOn())
+    m_state.moveCamera(now());
+  return window != nullptr;
+}
+
+void qSlicerFenestraLiveView::onViewChanged() {
+  if (!m_state.isOn() || !m_camera || !m_window)
+    return;
+  const FenestraViewCamera camera = takeCamera(m_camera, m_window);
+  if (camera.IsSame(m_seen)) // only the clipping range has changed, for example
+    return;
+  m_seen = camera;
+  m_state.moveCamera(now());
+  m_frame = nullptr;
+  if (m_opening)
+    m_opening->SetImage({});
+  advance();
+}
+
+void qSlicerFenestraLiveView::onDataChanged() {
+  update(); // other nodes may be referenced
+  m_state.change(now());
+  advance();
+}
+
+void qSlicerFenestraLiveView::advance() {
+  if (m_state.takeRequest(now()))
+    request();
+  if (m_state.takeImage(now()))
+    showImage();
+  if (const double next = m_state.nextTime(); next < LiveState::never)
+    m_timer.start(static_cast<int>(std::ceil(1e3 * std::max(next - now(), 0.0))));
+  if (m_lastPhase != phase()) {
+    m_lastPhase = phase();
+    emit phaseChanged(m_lastPhase);
+  }
+}
+
+void qSlicerFenestraLiveView::request() {
+  if (!m_settings || !m_camera || !m_window)
+    return;
+  constexpr int least = 16; // pixels, of a view that is not hidden
+  m_requested = m_seen = takeCamera(m_camera, m_window);
+  if (std::min(m_requested.width, m_requested.height) < least)
+    return;
+  qSlicerFenestraSession::Flags flags = vtkSlicerFenestraLogic::GetCameraFlags(m_camera);
+  flags["size"] = std::to_string(m_requested.width) + "x" + std::to_string(m_requested.height);
+  flags["background"] = "transparent";
+  m_session->previewView(m_settings, flags);
+}
+
+void qSlicerFenestraLiveView::receive(const qFenestraPreviewImage& picture) {
+  if (!m_state.isOn() || !isOf(m_requested, *picture.frame))
+    return;
+  m_frame = picture.frame;
+  m_state.receive(picture.done);
+  advance();
+}
+
+void qSlicerFenestraLiveView::showImage() {
+  if (!m_opening || !m_frame || !m_view)
+    return;
+  const auto image = std::make_shared<FenestraViewImage>();
+  image->width = m_frame->width;
+  image->height = m_frame->height;
+  image->rgba = m_frame->display;
+  image->depth = m_frame->depth;
+  m_opening->SetImage({image, m_requested, m_view->GetID()});
+}
