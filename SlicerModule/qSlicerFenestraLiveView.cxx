@@ -70,6 +70,12 @@ qSlicerFenestraLiveView::qSlicerFenestraLiveView(vtkSlicerFenestraLogic* logic,
   connect(&m_timer, &QTimer::timeout, this, &qSlicerFenestraLiveView::advance);
   connect(session, &qSlicerFenestraSession::previewReceived, this,
           [this](const QImage&, const qFenestraPreviewImage& picture) { receive(picture); });
+  connect(session, &qSlicerFenestraSession::previewRefused, this,
+          &qSlicerFenestraLiveView::clearImage);
+  constexpr int retryInterval = 500; // ms
+  m_retryTimer.setSingleShot(true);
+  m_retryTimer.setInterval(retryInterval);
+  connect(&m_retryTimer, &QTimer::timeout, this, &qSlicerFenestraLiveView::update);
   qvtkConnect(logic, vtkSlicerFenestraLogic::OpeningChangedEvent, this, SLOT(onOpeningChanged()));
   onOpeningChanged();
 }
@@ -82,19 +88,28 @@ void qSlicerFenestraLiveView::onOpeningChanged() {
 }
 
 void qSlicerFenestraLiveView::update() {
-  Node* settings = m_opening && m_opening->GetPhotorealistic() ? m_opening->GetSettings() : nullptr;
+  const bool isWanted = m_opening && m_opening->GetPhotorealistic();
+  Node* settings = isWanted ? m_opening->GetSettings() : nullptr;
   observe(settings);
+  if (!vtkSlicerFenestraLogic::CanShowPhotorealistic(settings))
+    settings = nullptr;
   if (followView(settings)) {
     if (!m_state.isOn())
       m_state.turnOn(now());
   } else if (m_state.isOn()) {
     m_state.turnOff();
-    m_frame = nullptr;
     m_session->previewView(nullptr, {});
-    if (m_opening)
-      m_opening->SetImage({});
+    clearImage();
   }
+  if (isWanted && !m_state.isOn()) // a scene is being loaded, or the layout has no 3D view
+    m_retryTimer.start();
   advance();
+}
+
+void qSlicerFenestraLiveView::clearImage() {
+  m_frame = nullptr;
+  if (m_opening)
+    m_opening->SetImage({});
 }
 
 /// Observes the nodes that the image shows, instead of those observed before.
@@ -141,14 +156,15 @@ void qSlicerFenestraLiveView::onViewChanged() {
     return;
   m_seen = camera;
   m_state.moveCamera(now());
-  m_frame = nullptr;
-  if (m_opening)
-    m_opening->SetImage({});
+  clearImage();
   advance();
 }
 
 void qSlicerFenestraLiveView::onDataChanged() {
+  const auto* const volume = m_volume.GetPointer();
   update(); // other nodes may be referenced
+  if (m_volume != volume)
+    clearImage();
   m_state.change(now());
   advance();
 }
@@ -180,7 +196,7 @@ void qSlicerFenestraLiveView::request() {
 }
 
 void qSlicerFenestraLiveView::receive(const qFenestraPreviewImage& picture) {
-  if (!m_state.isOn() || !isOf(m_requested, *picture.frame))
+  if (!m_state.isOn() || !picture.isCurrent || !isOf(m_requested, *picture.frame))
     return;
   m_frame = picture.frame;
   m_state.receive(picture.done);

@@ -52,12 +52,14 @@ private:
   void request();
   void receive(const qFenestraPreviewImage& picture);
   void showImage();
+  void clearImage();
 
   vtkSlicerFenestraLogic* m_logic;
   qSlicerFenestraSession* m_session;
   SlicerExport::LiveState m_state;
   QElapsedTimer m_clock;
-  QTimer m_timer; ///< of the state
+  QTimer m_timer;      ///< of the state
+  QTimer m_retryTimer; ///< while there is no view or no volume
   Phase m_lastPhase = Phase::off;
 
   vtkWeakPointer<vtkMRMLFenestraOpeningNode> m_opening; ///< observed, as all below

@@ -54,6 +54,8 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
   connect(&m_refreshTimer, &QTimer::timeout, this, &qSlicerFenestraSession::updatePreview);
   connect(&m_preview, &qFenestraPreview::refreshed, this, &qSlicerFenestraSession::showPreview);
   connect(&m_preview, &qFenestraPreview::refused, this, [this](const QString& message) {
+    for (auto flag = m_sentFlags.begin(); flag != m_sentFlags.end(); ++flag)
+      flag.value() = QJsonValue::Null; // the renderer took none of them: the next change has all
     emit previewRefused(toUserText(message, m_files->folder.path()));
   });
   connect(&m_preview, &qFenestraPreview::ended, this, [this](const qFenestraOutcome& outcome) {

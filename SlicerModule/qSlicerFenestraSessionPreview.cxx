@@ -54,6 +54,7 @@ void qSlicerFenestraSession::preview(Node* settings) {
 void qSlicerFenestraSession::previewView(Node* settings, const Flags& view) {
   m_viewed = settings;
   m_viewFlags = view;
+  m_sentFlags.remove("size"); // so that each request gives an image
   preview(m_previewed);
 }
 
@@ -76,6 +77,7 @@ void qSlicerFenestraSession::updatePreview() {
       return startPreview(contents, flags);
     sendToPreview(qFenestraPreview::toJson(flags));
   } catch (const SlicerExport::UserError& error) {
+    m_preview.stop(); // it shows other data
     emit previewRefused(QString::fromUtf8(error.what()));
   }
 }
@@ -83,11 +85,14 @@ void qSlicerFenestraSession::updatePreview() {
 void qSlicerFenestraSession::startPreview(const SlicerExport::Contents& contents,
                                           const Flags& flags) {
   m_starting = true;
+  m_preview.stop(); // it shows other data
   m_previewKey = makeDataKey(contents);
   write(contents, [this, flags, files = m_files](const QString& scene, const QString& message) {
     m_starting = false;
-    if (!message.isEmpty() || !previewed())
-      return message.isEmpty() ? void() : emit previewRefused(message);
+    if (!message.isEmpty())
+      return emit previewRefused(message);
+    if (!previewed())
+      return removeFolder(QFileInfo(scene).absolutePath());
     QStringList arguments = {scene};
     for (const std::string& argument : SlicerExport::toArguments(flags))
       arguments << QString::fromStdString(argument);
@@ -112,7 +117,7 @@ qSlicerFenestraSession::adaptFlags(Flags flags, const SlicerExport::Contents& co
   flags["noise"] = "0.03";
   flags["size"] = scaleToPreview(flags["size"]);
   if (m_viewed) {
-    for (const char* name : {"view", "scale", "angle"})
+    for (const char* name : {"view", "scale", "angle", "annotate"})
       flags.erase(name);
     for (const auto& [name, value] : m_viewFlags)
       flags[name] = value;
@@ -150,5 +155,7 @@ void qSlicerFenestraSession::sendToPreview(const QJsonObject& flags) {
 void qSlicerFenestraSession::showPreview(const qFenestraPreviewImage& picture) {
   const SlicerExport::Frame& frame = *picture.frame;
   const QImage image(frame.display.data(), frame.width, frame.height, QImage::Format_RGBA8888);
-  emit previewReceived(image.copy(), picture);
+  qFenestraPreviewImage received = picture;
+  received.isCurrent = picture.isCurrent && !m_starting && !m_refreshTimer.isActive();
+  emit previewReceived(image.copy(), received);
 }

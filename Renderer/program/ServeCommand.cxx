@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <set>
 #include <span>
 
@@ -20,7 +21,7 @@ namespace fenestra::core {
 namespace {
 
 const Option serveTable[] = {
-    {"frame", "FILE", "Preview",
+    {"mapped-image", "FILE", "Preview",
      "File that other programs map into their memory (files/images/FrameFile.h describes it): "
      "images at a quarter, half and full resolution, with depth; then only a given --output is "
      "written, too, at full resolution",
@@ -29,8 +30,10 @@ const Option serveTable[] = {
 
 /// Options of render with the defaults of serve: its images are previews, so the GPU may render
 /// them.
-void setServeDefaults(RenderOptions& options, const OptionValues& values) {
+void setServeDefaults(RenderOptions& options, const OptionValues& values, bool hasFrame) {
   resolveSmoothing(options, true);
+  if (hasFrame && options.denoise != Denoise::off)
+    options.scene.features = true;
   if (!values.has("device"))
     options.device = DeviceChoice::automatic;
 }
@@ -38,17 +41,16 @@ void setServeDefaults(RenderOptions& options, const OptionValues& values) {
 /// Renders the scene of the last change, as a ladder of sizes if there is a frame file.
 class Server {
 public:
-  /// `frame`: file to map; empty: none.
-  Server(const RenderJob& start, const std::filesystem::path& frame, Outputs& outputs)
+  /// `frame`: null: none.
+  Server(const RenderJob& start, std::unique_ptr<FrameFile> frame, Outputs& outputs)
       : m_source(start.input),
         m_values(start.stored),
         m_options(start.options),
         m_outputs(outputs),
-        m_hasFiles(frame.empty() || start.values.has("output")),
+        m_hasFiles(!frame || start.values.has("output")),
+        m_frame(std::move(frame)),
         m_input(m_values, m_source, m_monitor) {
-    setServeDefaults(m_options, m_values);
-    if (!frame.empty())
-      m_frame.emplace(frame, outputs);
+    setServeDefaults(m_options, m_values, m_frame != nullptr);
   }
 
   /// Runs until the process ends. Throws Error if the first scene cannot be built.
@@ -110,7 +112,7 @@ private:
       for (const ServeChange& change : changes)
         values = applyChange(change.options, values);
       RenderOptions options = makeRenderOptions(mergePreset(values, m_source));
-      setServeDefaults(options, values);
+      setServeDefaults(options, values, m_frame != nullptr);
       checkMemory(options.scene);
       prepare(options, listRungs(options).front(), stop);
       m_options = options;
@@ -251,8 +253,8 @@ private:
   RenderOptions m_options;
   ServeChange m_change; ///< last one applied
   Outputs& m_outputs;
-  const bool m_hasFiles;            ///< images at full resolution are also written to files
-  std::optional<FrameFile> m_frame; ///< nullopt: no frame file
+  const bool m_hasFiles;                    ///< images at full resolution are also written to files
+  const std::unique_ptr<FrameFile> m_frame; ///< null: no frame file
   RenderMonitor m_monitor;
   ServeInput m_input;
   std::map<int, PreparedScene> m_scenes; ///< last scene of each size, by Rung::scale
@@ -301,18 +303,21 @@ int serveCommand(int argc, char** argv, int first) {
     return 0;
   configureMachine(*given);
   OptionValues values = *given;
-  const std::filesystem::path frame = values.text("frame").value_or("");
-  values.remove("frame"); // no option of an image
+  const std::filesystem::path frame = values.text("mapped-image").value_or("");
+  values.remove("mapped-image"); // no option of an image
   RenderJob start = makeRenderJob(values);
   if (!frame.empty() && !values.has("output"))
     start.options.outputs.clear();
   // Never destroyed: the reading thread uses both until the process ends.
   Outputs& outputs = *new Outputs;
   declareOutputs(start.options, outputs);
-  if (!frame.empty())
-    outputs.add(frame);
   checkMemory(start.options.scene);
-  Server& server = *new Server(start, frame, outputs);
+  std::unique_ptr<FrameFile> file;
+  if (!frame.empty()) {
+    outputs.add(frame);
+    file = std::make_unique<FrameFile>(frame, outputs);
+  }
+  Server& server = *new Server(start, std::move(file), outputs);
   server.run();
 }
 

@@ -65,6 +65,7 @@ void Manager::UnobserveMRMLScene() {
   this->Observe(nullptr);
   this->Pass->Detach();
   this->Image->SetRenderer(nullptr);
+  this->HideVolume();
 }
 
 void Manager::OnMRMLSceneNodeAdded(vtkMRMLNode* node) {
@@ -171,8 +172,22 @@ bool Manager::AttachPass() {
 void Manager::OnStart() {
   if (this->AttachPass())
     this->RequestRender(); // the pass takes effect in the next frame
+  this->HideVolume();
+}
+
+/// Hides the volume that the image replaces until the end of the frame, and from pickers until a
+/// frame without the image.
+void Manager::HideVolume() {
   vtkVolume* volume = this->IsImageShown() ? this->FindVolume() : nullptr;
-  if (volume && volume->GetVisibility()) {
+  if (this->Replaced && this->Replaced != volume)
+    this->Replaced->SetPickable(true);
+  if (volume && volume != this->Replaced && !volume->GetPickable())
+    return; // by somebody else's choice
+  this->Replaced = volume;
+  if (!volume)
+    return;
+  volume->SetPickable(false);
+  if (volume->GetVisibility()) {
     volume->SetVisibility(false);
     this->Hidden = volume;
   }

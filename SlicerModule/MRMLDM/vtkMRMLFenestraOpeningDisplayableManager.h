@@ -55,6 +55,7 @@ private:
   void RequestUpdate();
   bool AttachPass();
   void UpdateImage();
+  void HideVolume();
   void OnStart();
   void OnEnd();
   vtkVolume* FindVolume();
@@ -62,7 +63,8 @@ private:
 
   vtkNew<vtkFenestraOpeningPass> Pass;
   vtkNew<vtkFenestraImageProp> Image;
-  vtkWeakPointer<vtkVolume> Hidden; ///< between StartEvent and EndEvent: the image replaces it
+  vtkWeakPointer<vtkVolume> Replaced; ///< by the image: cannot be picked
+  vtkWeakPointer<vtkVolume> Hidden;   ///< between StartEvent and EndEvent: the image replaces it
   vtkMRMLFenestraOpeningNode* Opening = nullptr; ///< observed
   vtkMRMLFenestraRenderNode* Settings = nullptr; ///< observed
   unsigned long StartObserver = 0, EndObserver = 0;

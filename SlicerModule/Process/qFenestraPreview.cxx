@@ -26,7 +26,8 @@ void qFenestraPreview::start(const QString& program, const QStringList& argument
   connect(m_child, &qFenestraProgram::ended, this, &qFenestraPreview::ended);
   connect(m_child, &QObject::destroyed, [files] {}); // the connection keeps the files alive
   m_file.setFileName(QDir(folder).filePath(frameFile));
-  m_child->run(program, QStringList{"serve", QString("--frame=%1").arg(frameFile)} + arguments,
+  m_child->run(program,
+               QStringList{"serve", QString("--mapped-image=%1").arg(frameFile)} + arguments,
                folder);
 }
 
@@ -99,6 +100,7 @@ void qFenestraPreview::readEvent(const QString& line) {
   image.noise = reply["noiseDenoised"].toDouble(reply["noise"].toDouble(-1.0));
   image.seconds = reply["seconds"].toDouble();
   image.done = reply["done"].toBool();
+  image.isCurrent = m_changes.isEmpty();
   emit refreshed(image);
 }
 
@@ -111,8 +113,10 @@ std::shared_ptr<const SlicerExport::Frame> qFenestraPreview::readFrame() {
       m_memoryBytes = m_file.size(); // the file may grow
       m_memory = m_file.map(0, m_memoryBytes);
     }
-    if (!m_memory)
+    if (!m_memory) {
+      closeFrame();
       throw std::runtime_error("The renderer's image could not be read.");
+    }
     state = SlicerExport::readFrame(m_memory, static_cast<std::size_t>(m_memoryBytes), *frame);
     if (state == State::outgrown)
       closeFrame();

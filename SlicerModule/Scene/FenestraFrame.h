@@ -1,6 +1,7 @@
 #pragma once
-// Reads the frame file of `fenestra serve --frame`, which the renderer writes while it is read: its
-// latest image. Renderer/files/images/FrameFile.h describes the format. Needs only standard C++.
+// Reads the frame file of `fenestra serve --mapped-image`, which the renderer writes while it is
+// read: its latest image. Renderer/files/images/FrameFile.h describes the format. Needs only
+// standard C++.
 
 #include <array>
 #include <cstddef>

@@ -28,7 +28,7 @@ void LiveState::change(double now) {
 }
 
 void LiveState::receive(bool isLast) {
-  if (m_phase != Phase::waiting && m_phase != Phase::refining)
+  if (m_phase == Phase::off || m_phase == Phase::turning)
     return; // of an earlier camera
   m_hasImage = true;
   m_isLast = isLast;

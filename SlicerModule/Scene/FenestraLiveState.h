@@ -11,7 +11,7 @@ class LiveState {
 public:
   enum class Phase {
     off,
-    turning,  ///< the camera moves: nothing is rendered
+    turning,  ///< the camera moves: nothing is requested or shown
     waiting,  ///< for the first image of the camera or of other changes
     refining, ///< images are shown, and further ones follow
     done      ///< the last image is shown: nothing runs
@@ -30,7 +30,7 @@ public:
   void moveCamera(double now);
   /// Anything else that the image shows has changed. While the camera moves, nothing more is to do.
   void change(double now);
-  /// An image of the last request has arrived.
+  /// An image of the camera has arrived, that shows all changes.
   void receive(bool isLast);
 
   /// True once per rest of the camera or change: request an image now.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Cost and quality of the images of `fenestra serve --frame` after moves of the camera.
+"""Cost and quality of the images of `fenestra serve --mapped-image` after moves of the camera.
 
 usage: preview.py FENESTRA INPUT [--focus NAME] [OPTIONS...]
        (an 800x600 preview of 20 views; OPTIONS: further ones of `fenestra serve`)
@@ -31,7 +31,7 @@ class Server:
     def __init__(self, program, arguments, folder):
         self.frame = os.path.join(folder, "view.frame")
         self.process = subprocess.Popen(
-            [program, "serve", "--frame", self.frame, "--size", "%dx%d" % SIZE] + arguments,
+            [program, "serve", "--mapped-image", self.frame, "--size", "%dx%d" % SIZE] + arguments,
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self.next_id = 0
 

@@ -1,4 +1,4 @@
-// `fenestra serve --frame`: the mapped image, its layers and its sizes.
+// `fenestra serve --mapped-image`: the mapped image, its layers and its sizes.
 
 #include "ServeTesting.h"
 #include "files/images/DisplayTransform.h"
@@ -45,7 +45,7 @@ private:
 class ServeFrame : public ServeTest {
 protected:
   static Arguments makeArguments(const Arguments& more) {
-    Arguments all = {"serve", "volume.nrrd", "--frame", "view.frame", "--samples", "2"};
+    Arguments all = {"serve", "volume.nrrd", "--mapped-image", "view.frame", "--samples", "2"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -122,12 +122,18 @@ TEST_F(ServeFrame, HasTheCamera) {
 
 TEST_F(ServeFrame, UnusableFilesAreRefused) {
   expectErrors(
-      {{"input", {"serve", "volume.nrrd", "--frame", "volume.nrrd"}, 2, "volume.nrrd:"},
-       {"folder", {"serve", "volume.nrrd", "--frame", "."}, 4, ".:"},
-       {"no folder", {"serve", "volume.nrrd", "--frame", "no/view.frame"}, 4, "no/view.frame:"},
-       {"stream", {"serve", "volume.nrrd", "--frame", "/dev/stdout"}, 4, "/dev/stdout:"},
-       {"result", {"serve", "volume.nrrd", "--frame", "a.png", "--output", "a.png"}, 2, "a.png:"},
-       {"render", {"render", "volume.nrrd", "--frame", "view.frame"}, 2, "--frame:"}},
+      {{"input", {"serve", "volume.nrrd", "--mapped-image", "volume.nrrd"}, 2, "volume.nrrd:"},
+       {"folder", {"serve", "volume.nrrd", "--mapped-image", "."}, 4, ".:"},
+       {"no folder",
+        {"serve", "volume.nrrd", "--mapped-image", "no/view.frame"},
+        4,
+        "no/view.frame:"},
+       {"stream", {"serve", "volume.nrrd", "--mapped-image", "/dev/stdout"}, 4, "/dev/stdout:"},
+       {"result",
+        {"serve", "volume.nrrd", "--mapped-image", "a.png", "--output", "a.png"},
+        2,
+        "a.png:"},
+       {"render", {"render", "volume.nrrd", "--mapped-image", "view.frame"}, 2, "--mapped-image:"}},
       folder.path());
 }
 

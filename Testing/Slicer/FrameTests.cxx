@@ -121,7 +121,7 @@ TEST_F(SlicerFrame, NoneOfAHundredThousandReadsIsTorn) {
   MappedFile mapped(path);
   mapped.extend(std::filesystem::file_size(path));
   int complete = 0, torn = 0, changes = 0, before = 0;
-  for (int i = 0; i < reads; ++i) {
+  for (int i = 0; i < reads || changes < 100; ++i) {
     Frame frame;
     const FrameState state = readFrame(mapped.bytes().data(), mapped.bytes().size(), frame);
     if (state == FrameState::outgrown)
@@ -141,7 +141,6 @@ TEST_F(SlicerFrame, NoneOfAHundredThousandReadsIsTorn) {
   writer.join();
   EXPECT_EQ(torn, 0);
   EXPECT_GT(complete, 0);
-  EXPECT_GT(changes, 0);
   std::cout << complete << " of " << reads << " reads were complete, of " << changes
             << " changes\n";
 }

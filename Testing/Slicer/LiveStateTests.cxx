@@ -114,6 +114,17 @@ TEST_F(SlicerLiveState, AChangeAsksAgainButNotWhileTurning) {
   EXPECT_EQ(requests, 3);
 }
 
+TEST_F(SlicerLiveState, ImagesAfterTheLastOneAreShown) {
+  state.turnOn(now);
+  advance();
+  state.receive(true); // of data that have changed unnoticed
+  advance();
+  state.receive(false);
+  advanceTo(now + 1.0);
+  EXPECT_EQ(images, 2);
+  EXPECT_EQ(state.phase(), Phase::refining);
+}
+
 TEST_F(SlicerLiveState, TheFirstImageOfANewCameraDoesNotWait) {
   state.turnOn(now);
   advance();

@@ -51,7 +51,8 @@ public:
       const double stopped = before * -std::expm1(-extinction * length);
       sums.transmittance -= stopped;
       if (before > 0.5 && sums.transmittance <= 0.5)
-        sums.expected.distance50 = part->before + t + length * ((before - 0.5) / stopped - 0.5);
+        sums.expected.distance50 =
+            part->before + t - 0.5 * length + std::log(2.0 * before) / extinction;
       sums.pending += stopped;
       sums.moment += stopped * t;
       if (sums.pending > MarchAccuracy::groupProbability)

@@ -1,5 +1,8 @@
 #include "files/images/FrameFile.h"
 
+#include "base/Error.h"
+#include "io/platform/OutputTarget.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -46,6 +49,8 @@ void addCamera(const FrameCamera& camera, Header& header) {
 
 /// Creates the file, so that it is in place before it is mapped.
 const std::filesystem::path& create(const std::filesystem::path& path, Outputs& outputs) {
+  if (findStream(path))
+    throw outputError(path, "is a stream, which cannot be mapped; name a file");
   const Header header = makeHeader(sizeof(Header));
   outputs.write(path, {reinterpret_cast<const char*>(header.data()), sizeof header});
   outputs.commit(Durability::none);
