@@ -5,7 +5,7 @@ usage: preview.py FENESTRA INPUT [--focus NAME] [OPTIONS...]
        (an 800x600 preview of 20 views; OPTIONS: further ones of `fenestra serve`)
 
 Prints CSV. For each resolution: median CPU seconds of the server from the move to the image, and
-the error of the image, enlarged to full resolution, against an image of 256 samples per pixel:
+the error of the image, enlarged to full resolution, against an image of 64 samples per pixel:
 relMSE as in `fenestra compare`, and the outline of the focus, as the 95th percentile of its
 distance in pixels. Then the delay from a change to the end of the work before.
 Requires numpy and scipy.
@@ -131,12 +131,12 @@ def measure_quality(program, arguments, focus, folder):
         pass
     for move in (3, 10):
         rungs = collect_images(server, camera(move), 1)
-        reference = collect_images(server, camera(move), 256)[1]
+        reference = collect_images(server, camera(move), 64)[1]
         for scale, image in rungs.items():
             errors.setdefault(scale, []).append(relative_error(image, reference))
     server.close()
     if focus:
-        server = Server(program, arguments + ["--context-extinction", "0", "--background",
+        server = Server(program, arguments + ["--context-density", "0", "--background",
                                               "transparent"], folder)
         for _ in server.events():
             pass
