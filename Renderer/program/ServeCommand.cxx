@@ -224,7 +224,6 @@ private:
   void writeImageEvent(const RenderResult& result, const std::optional<double>& filtered,
                        const Rung& rung, bool last) {
     nlohmann::ordered_json event = {{"event", "picture"}, {"id", m_change.id}};
-    event["scale"] = rung.scale;
     event["samples"] = result.finishedSamples;
     event["noise"] = result.film.noise(); // null: infinite
     if (filtered)
@@ -233,6 +232,7 @@ private:
     event["seconds"] = m_change.age.seconds();
     event["startSeconds"] = m_startSeconds;
     event["target"] = result.target;
+    event["scale"] = rung.scale;
     event["done"] = last;
     if (m_hasFiles && rung.isFull())
       for (const std::filesystem::path& path : m_options.outputs)
