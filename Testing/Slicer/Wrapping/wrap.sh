@@ -30,7 +30,7 @@ fi
 wrap=$root/usr/bin/vtkWrapPython-9.1
 libraries=$root/usr/lib/x86_64-linux-gnu
 export LD_LIBRARY_PATH="$libraries${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
-folders=("$here" "$module/Logic" "$module/MRML" "$module/Scene" "$module/../Renderer")
+folders=("$here" "$module/Logic" "$module/MRML" "$module/Scene" "$module/View" "$module/../Renderer")
 for export in vtkSlicerFenestraModuleLogicExport vtkSlicerFenestraModuleMRMLExport; do
   name=$(grep -rhoE 'VTK_SLICER_FENESTRA_MODULE_(LOGIC|MRML)_EXPORT' "$module/Logic" "$module/MRML" | sort -u)
   for one in $name; do printf '#ifndef %s\n#define %s\n#endif\n' "$one" "$one"; done >$export.h
