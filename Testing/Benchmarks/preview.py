@@ -103,15 +103,18 @@ def outline_distance(image, reference):
 
 
 def measure_moves(server):
+    """CPU seconds from each move to the first image of each scale."""
     for _ in server.events():
         pass
-    seconds, images = {}, {}
+    seconds = {}
     for move in range(MOVES):
         start = server.cpu_seconds()
+        first = {}
         server.send(**camera(move))
         for event in server.events():
-            if move == 0 or event["scale"] not in seconds or len(seconds[event["scale"]]) <= move:
-                seconds.setdefault(event["scale"], []).append(server.cpu_seconds() - start)
+            first.setdefault(event["scale"], server.cpu_seconds() - start)
+        for scale, used in first.items():
+            seconds.setdefault(scale, []).append(used)
     return seconds
 
 
@@ -124,29 +127,19 @@ def collect_images(server, view, samples):
     return images
 
 
-def measure_quality(program, arguments, focus, folder):
-    errors, distances = {}, {}
+def measure_quality(program, arguments, folder, reference_samples, measure):
+    """Results of measure(image, reference) for two views, by scale."""
+    results = {}
     server = Server(program, arguments, folder)
     for _ in server.events():
         pass
     for move in (3, 10):
         rungs = collect_images(server, camera(move), 1)
-        reference = collect_images(server, camera(move), 64)[1]
+        reference = collect_images(server, camera(move), reference_samples)[1]
         for scale, image in rungs.items():
-            errors.setdefault(scale, []).append(relative_error(image, reference))
+            results.setdefault(scale, []).append(measure(image, reference))
     server.close()
-    if focus:
-        server = Server(program, arguments + ["--context-density", "0", "--background",
-                                              "transparent"], folder)
-        for _ in server.events():
-            pass
-        for move in (3, 10):
-            rungs = collect_images(server, camera(move), 1)
-            reference = collect_images(server, camera(move), 64)[1]
-            for scale, image in rungs.items():
-                distances.setdefault(scale, []).append(outline_distance(image, reference))
-        server.close()
-    return errors, distances
+    return results
 
 
 def measure_delays(server, count=100):
@@ -170,7 +163,10 @@ def main():
         seconds = measure_moves(server)
         delays = measure_delays(server)
         server.close()
-        errors, distances = measure_quality(program, arguments + ["--samples", "1"], focus, folder)
+        sparse = arguments + ["--samples", "1"]
+        errors = measure_quality(program, sparse, folder, 64, relative_error)
+        alone = sparse + ["--context-density", "0", "--background", "transparent"]
+        distances = measure_quality(program, alone, folder, 4, outline_distance) if focus else {}
     print("scale,cpu_seconds,relmse,outline_pixels")
     for scale in sorted(seconds, reverse=True):
         print("%d,%.3f,%.4f,%s" % (scale, statistics.median(seconds[scale]),

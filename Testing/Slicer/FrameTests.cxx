@@ -104,7 +104,7 @@ TEST_F(SlicerFrame, ALargerImageNeedsALargerMapping) {
   EXPECT_EQ(frame.request, 2);
 }
 
-/// The first value that differs from what `number` implies.
+/// True if all values equal `value`.
 template <typename Value>
 bool hasOnly(const std::vector<Value>& values, Value value) {
   return std::all_of(values.begin(), values.end(), [value](Value v) { return v == value; });
@@ -132,10 +132,10 @@ TEST_F(SlicerFrame, NoneOfAHundredThousandReadsIsTorn) {
     const auto number = static_cast<int>(frame.request);
     changes += number != before ? 1 : 0;
     before = number;
-    const bool isWhole = frame.width == (number == 0 ? 16 : 8 + number % 5) &&
-                         hasOnly(frame.display, static_cast<std::uint8_t>(number)) &&
-                         hasOnly(frame.depth, static_cast<float>(number));
-    torn += isWhole ? 0 : 1;
+    const bool isOfOneImage = frame.width == (number == 0 ? 16 : 8 + number % 5) &&
+                              hasOnly(frame.display, static_cast<std::uint8_t>(number)) &&
+                              hasOnly(frame.depth, static_cast<float>(number));
+    torn += isOfOneImage ? 0 : 1;
   }
   isDone = true;
   writer.join();
