@@ -12,6 +12,8 @@
 #include <vtkMRMLViewNode.h>
 
 #include <vtkCommand.h>
+#include <vtkRenderer.h>
+#include <vtkRendererCollection.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,32 +34,17 @@ qMRMLThreeDWidget* findWidget(vtkMRMLNode* view) {
   return nullptr;
 }
 
-/// The view's camera and size as they are now.
-FenestraViewCamera takeCamera(vtkMRMLCameraNode* node, vtkRenderWindow* window) {
-  FenestraViewCamera camera = {};
-  node->GetPosition(camera.position.data());
-  node->GetFocalPoint(camera.focalPoint.data());
-  node->GetViewUp(camera.viewUp.data());
-  camera.isParallel = node->GetParallelProjection() != 0;
-  camera.viewAngle = node->GetViewAngle();
-  camera.parallelScale = node->GetParallelScale();
-  camera.width = window->GetSize()[0];
-  camera.height = window->GetSize()[1];
-  return camera;
-}
-
-/// True if the image is of this camera, up to the rounding of its text.
-bool isOf(const FenestraViewCamera& camera, const SlicerExport::Frame& frame) {
-  const auto isNear = [](double a, double b) {
-    return std::abs(a - b) <= 1e-9 * std::max({std::abs(a), std::abs(b), 1.0});
-  };
-  const auto areNear = [&](const auto& a, const auto& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), isNear);
-  };
-  return areNear(camera.position, frame.position) && areNear(camera.focalPoint, frame.target) &&
-         areNear(camera.viewUp, frame.up) && camera.isParallel == frame.isOrthographic &&
-         isNear(camera.isParallel ? camera.parallelScale : camera.viewAngle, frame.extent) &&
-         camera.width == frame.fullWidth && camera.height == frame.fullHeight;
+/// The camera that an image shows.
+FenestraViewCamera toCamera(const SlicerExport::Frame& frame) {
+  return {frame.position,
+          frame.target,
+          frame.up,
+          frame.isOrthographic,
+          frame.isOrthographic ? 0.0 : frame.extent,
+          frame.isOrthographic ? frame.extent : 0.0,
+          {0.0, 0.0},
+          frame.fullWidth,
+          frame.fullHeight};
 }
 
 } // namespace
@@ -143,18 +130,19 @@ bool qSlicerFenestraLiveView::followView(Node* settings) {
   m_view = view;
   m_camera = camera;
   m_window = window;
-  if (isOther && window && m_state.isOn())
+  if (isOther && window && m_state.isOn()) {
     m_state.moveCamera(now());
+    clearImage(); // of the view before
+  }
   return window != nullptr;
 }
 
 void qSlicerFenestraLiveView::onViewChanged() {
-  if (!m_state.isOn() || !m_camera || !m_window)
+  const auto camera = takeCamera();
+  if (!m_state.isOn() ||
+      (camera && camera->IsSame(m_seen))) // only the clipping range has changed, for example
     return;
-  const FenestraViewCamera camera = takeCamera(m_camera, m_window);
-  if (camera.IsSame(m_seen)) // only the clipping range has changed, for example
-    return;
-  m_seen = camera;
+  m_seen = camera.value_or(FenestraViewCamera{});
   m_state.moveCamera(now());
   clearImage();
   advance();
@@ -176,19 +164,20 @@ void qSlicerFenestraLiveView::advance() {
     showImage();
   if (const double next = m_state.nextTime(); next < LiveState::never)
     m_timer.start(static_cast<int>(std::ceil(1e3 * std::max(next - now(), 0.0))));
-  if (m_lastPhase != phase()) {
-    m_lastPhase = phase();
-    emit phaseChanged(m_lastPhase);
-  }
+}
+
+/// The view's camera as it is now; nothing: it can have no image.
+std::optional<FenestraViewCamera> qSlicerFenestraLiveView::takeCamera() {
+  return FenestraViewCamera::FromRenderer(m_window ? m_window->GetRenderers()->GetFirstRenderer()
+                                                   : nullptr);
 }
 
 void qSlicerFenestraLiveView::request() {
-  if (!m_settings || !m_camera || !m_window)
-    return;
   constexpr int least = 16; // pixels, of a view that is not hidden
-  m_requested = m_seen = takeCamera(m_camera, m_window);
-  if (std::min(m_requested.width, m_requested.height) < least)
+  const auto camera = takeCamera();
+  if (!m_settings || !m_camera || !camera || std::min(camera->width, camera->height) < least)
     return;
+  m_requested = m_seen = *camera;
   qSlicerFenestraSession::Flags flags = vtkSlicerFenestraLogic::GetCameraFlags(m_camera);
   flags["size"] = std::to_string(m_requested.width) + "x" + std::to_string(m_requested.height);
   flags["background"] = "transparent";
@@ -196,7 +185,7 @@ void qSlicerFenestraLiveView::request() {
 }
 
 void qSlicerFenestraLiveView::receive(const qFenestraPreviewImage& picture) {
-  if (!m_state.isOn() || !picture.isCurrent || !isOf(m_requested, *picture.frame))
+  if (!m_state.isOn() || !picture.isCurrent || !m_requested.IsSame(toCamera(*picture.frame)))
     return;
   m_frame = picture.frame;
   m_state.receive(picture.done);

@@ -10,6 +10,8 @@
 
 #include <ctkVTKObject.h>
 
+#include <optional>
+
 #include "vtkMRMLFenestraOpeningNode.h"
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraLogic.h"
@@ -28,14 +30,7 @@ class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraLiveView : public QObjec
   QVTK_OBJECT
 
 public:
-  using Phase = SlicerExport::LiveState::Phase;
-
   qSlicerFenestraLiveView(vtkSlicerFenestraLogic* logic, qSlicerFenestraSession* session);
-
-  Phase phase() const { return m_state.phase(); }
-
-signals:
-  void phaseChanged(qSlicerFenestraLiveView::Phase phase);
 
 private slots:
   void onOpeningChanged();
@@ -49,6 +44,7 @@ private:
   void observe(vtkMRMLFenestraRenderNode* settings);
   bool followView(vtkMRMLFenestraRenderNode* settings);
   void advance();
+  std::optional<FenestraViewCamera> takeCamera();
   void request();
   void receive(const qFenestraPreviewImage& picture);
   void showImage();
@@ -60,7 +56,6 @@ private:
   QElapsedTimer m_clock;
   QTimer m_timer;      ///< of the state
   QTimer m_retryTimer; ///< while there is no view or no volume
-  Phase m_lastPhase = Phase::off;
 
   vtkWeakPointer<vtkMRMLFenestraOpeningNode> m_opening; ///< observed, as all below
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_settings;
