@@ -188,7 +188,7 @@ void qSlicerFenestraLiveView::receive(const qFenestraPreviewImage& picture) {
   if (!m_state.isOn() || !picture.isCurrent || !m_requested.IsSame(toCamera(*picture.frame)))
     return;
   m_frame = picture.frame;
-  m_state.receive(picture.done);
+  m_state.receive(picture.frame->isLast);
   advance();
 }
 

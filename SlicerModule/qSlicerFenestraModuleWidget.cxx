@@ -279,9 +279,10 @@ void qSlicerFenestraModuleWidget::repeat() {
 void qSlicerFenestraModuleWidgetPrivate::showPreviewImage(const QImage& image,
                                                           const qFenestraPreviewImage& info) {
   PreviewLabel->setPixmap(QPixmap::fromImage(image));
-  const QString noise = info.noise < 0.0 ? QString() : tr(", noise %1").arg(info.noise, 0, 'g', 2);
+  const double value = info.frame->noise;
+  const QString noise = std::isnan(value) ? QString() : tr(", noise %1").arg(value, 0, 'g', 2);
   PreviewStateLabel->setText(tr("Preview: %1 samples per pixel%2, %3")
-                                 .arg(info.samples)
+                                 .arg(info.frame->samples)
                                  .arg(noise, formatDuration(info.seconds)));
 }
 

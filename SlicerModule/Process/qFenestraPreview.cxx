@@ -94,12 +94,9 @@ void qFenestraPreview::readEvent(const QString& line) {
   } catch (const std::runtime_error& error) {
     return emit refused(error.what());
   }
-  if (!image.frame)
+  if (!image.frame || image.frame->request != (m_lastId > 0 ? m_lastId : -1))
     return;
-  image.samples = reply["samples"].toInt();
-  image.noise = reply["noiseDenoised"].toDouble(reply["noise"].toDouble(-1.0));
   image.seconds = reply["seconds"].toDouble();
-  image.done = reply["done"].toBool();
   image.isCurrent = m_changes.isEmpty();
   emit refreshed(image);
 }

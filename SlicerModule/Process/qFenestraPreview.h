@@ -15,10 +15,7 @@
 
 struct qFenestraPreviewImage {
   std::shared_ptr<const SlicerExport::Frame> frame;
-  int samples = 0;       ///< per pixel
-  double noise = -1.0;   ///< relative noise; negative: not known yet
   double seconds = 0.0;  ///< time since the change
-  bool done = false;     ///< last image of the change
   bool isCurrent = true; ///< false: there are newer changes, which are not sent yet
 };
 

@@ -396,8 +396,8 @@ TEST_F(SlicerMaterialsImage, PreviewAcceptsTheSameFlags) {
                    [&](const QString& message) { refused << message; });
   const auto receiveImage = [&] {
     images.clear();
-    EXPECT_TRUE(
-        waitFor([&] { return !refused.isEmpty() || (!images.empty() && images.back().done); }));
+    EXPECT_TRUE(waitFor(
+        [&] { return !refused.isEmpty() || (!images.empty() && images.back().frame->isLast); }));
     EXPECT_TRUE(refused.isEmpty()) << refused.join('\n').toStdString();
     return readBytes(folder / "preview.png");
   };
