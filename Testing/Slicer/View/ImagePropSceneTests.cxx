@@ -179,9 +179,7 @@ TEST_F(ImageProp, WindowsThatWereClosedShowTheImageAgain) {
 
   this->window->RemoveRenderer(view.renderer);
   const vtkNew<vtkRenderWindow> other;
-  other->SetOffScreenRendering(1);
-  other->SetMultiSamples(0);
-  other->SetSize(240, 180);
+  views::setUpWindow(other);
   other->AddRenderer(view.renderer);
   EXPECT_EQ(views::renderImage(other, view.renderer).colors, shown);
 }

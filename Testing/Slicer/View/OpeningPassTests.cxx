@@ -342,9 +342,7 @@ TEST_F(OpeningPass, WindowsThatWereClosedOpenAgain) {
 
   this->window->RemoveRenderer(view.renderer);
   const vtkNew<vtkRenderWindow> other;
-  other->SetOffScreenRendering(1);
-  other->SetMultiSamples(0);
-  other->SetSize(240, 180);
+  views::setUpWindow(other);
   other->AddRenderer(view.renderer);
   EXPECT_EQ(renderImage(other, view.renderer).colors, colors);
   pass->Detach();

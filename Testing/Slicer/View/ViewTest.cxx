@@ -48,14 +48,18 @@ Image renderImage(vtkRenderWindow* window, vtkRenderer* renderer) {
   return image;
 }
 
+void setUpWindow(vtkRenderWindow* window) {
+  window->SetOffScreenRendering(1);
+  window->SetMultiSamples(0);
+  window->SetSize(240, 180);
+}
+
 void ViewTest::SetUp() {
   static const std::string obstacle = findObstacle();
   if (!obstacle.empty())
     GTEST_SKIP() << obstacle;
   vtkOutputWindow::SetInstance(this->messages);
-  this->window->SetOffScreenRendering(1);
-  this->window->SetMultiSamples(0);
-  this->window->SetSize(240, 180);
+  setUpWindow(this->window);
 }
 
 void ViewTest::TearDown() {

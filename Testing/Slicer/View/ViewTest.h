@@ -30,6 +30,9 @@ struct Image {
 /// Renders, and reads a renderer's part of the window.
 Image renderImage(vtkRenderWindow* window, vtkRenderer* renderer);
 
+/// Lets the window render 240 x 180 pixels off screen.
+void setUpWindow(vtkRenderWindow* window);
+
 /// Skips without OpenGL. Fails with messages of VTK.
 class ViewTest : public ::testing::Test {
 protected:
@@ -39,7 +42,7 @@ protected:
   Image render(vtkRenderer* renderer);
 
   const vtkNew<MessageCounter> messages;
-  const vtkNew<vtkRenderWindow> window; ///< 240 x 180 pixels
+  const vtkNew<vtkRenderWindow> window; ///< from setUpWindow()
 };
 
 } // namespace views
