@@ -26,15 +26,6 @@ float roundUp(double x) {
   return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
-/// Corners of a cell enlarged by `margin` (in cells) on each side.
-Corners findCorners(const Affine& cellToWorld, const Vec3& cell, const Vec3& margin) {
-  Corners corners;
-  const Box box{cell - margin, cell + margin + Vec3::Ones()};
-  for (int i = 0; i < 8; ++i)
-    corners[static_cast<std::size_t>(i)] = cellToWorld * box.corner(i);
-  return corners;
-}
-
 /// True if the indicator can reach 1/2 in `box` (the mask's index space): one of the voxels that
 /// interpolation reads there is at least threshold(). Outside the mask the border voxels repeat.
 bool canReachMask(const Mask& mask, const Box& box) {
@@ -61,22 +52,22 @@ double findMaximumFactor(const ContextStyle& style, const Corners& corners) {
   return canReachMask(*style.focus, box) ? 1.0 : style.extinction;
 }
 
+/// Cell with the majorant that remains under the clip and the style.
+MajorantGrid::Cell makeCell(double clipped, double unclipped, const Corners& corners,
+                            const Clip& clip, const ContextStyle* style) {
+  const ClipBounds bounds =
+      std::holds_alternative<ClipNone>(clip) ? ClipBounds::all : boundClipWeight(clip, corners);
+  const double majorant = std::max(clipped * bounds.max, unclipped) *
+                          (style ? findMaximumFactor(*style, corners) : 1.0);
+  const bool isCut = majorant > 0.0 && !(bounds.isUniform && bounds.max == 1.0);
+  return {roundUp(majorant), isCut};
+}
+
 /// Maximum extinction in a cell, mm^-1: of components that the clip can remove, and of unclipped
 /// ones.
 struct CellBound {
   double clipped = 0.0, unclipped = 0.0;
 };
-
-/// Cell with the majorant that remains under the clip and the style.
-MajorantGrid::Cell makeCell(const CellBound& bound, const Corners& corners, const Clip& clip,
-                            const ContextStyle* style) {
-  const ClipBounds bounds =
-      std::holds_alternative<ClipNone>(clip) ? ClipBounds::all : boundClipWeight(clip, corners);
-  const double majorant = std::max(bound.clipped * bounds.max, bound.unclipped) *
-                          (style ? findMaximumFactor(*style, corners) : 1.0);
-  const bool isCut = majorant > 0.0 && !(bounds.isUniform && bounds.max == 1.0);
-  return {roundUp(majorant), isCut};
-}
 
 double findMaximum(const TransferFunction& transfer, const Grid& grid, double low, double high) {
   const double extinction = findMaximum(transfer.extinction, low, high);
@@ -102,31 +93,60 @@ CellBound boundMixture(const Mixture& mixture, const Grid& grid, const Corners& 
   return bound;
 }
 
+/// Calls visit(index, cell) for all cells, in parallel.
+template <typename Visit>
+void forEachCell(const Size3& count, const Visit& visit) {
+  tbb::parallel_for(std::int64_t{0}, count.z(), [&](std::int64_t z) {
+    for (std::int64_t y = 0; y < count.y(); ++y)
+      for (std::int64_t x = 0; x < count.x(); ++x)
+        visit(static_cast<std::size_t>(x + count.x() * (y + count.y() * z)), Size3(x, y, z));
+  });
+}
+
 } // namespace
 
-MajorantGrid::MajorantGrid(const Grid& grid, const MinMaxGrid& ranges,
-                           const TransferFunction& transfer, const Clip& clip,
-                           const ContextStyle* style, const Mixture* mixture)
-    : m_cellCount(ranges.cellCount()), m_edge(ranges.cellSize()), m_cells(ranges.size()) {
-  m_worldToCell = makeScaling(ranges.cellSize().cast<double>().cwiseInverse()) *
-                  (makeTranslation(Vec3::Constant(0.5)) * grid.worldToIndex);
-  const Affine cellToWorld = m_worldToCell.inverse();
+ExtinctionBounds::ExtinctionBounds(const Grid& grid, const MinMaxGrid& ranges,
+                                   const TransferFunction& transfer, const Mixture* mixture)
+    : m_cellCount(ranges.cellCount()),
+      m_edge(ranges.cellSize()),
+      m_worldToCell(makeScaling(ranges.cellSize().cast<double>().cwiseInverse()) *
+                    (makeTranslation(Vec3::Constant(0.5)) * grid.worldToIndex)),
+      m_cellToWorld(m_worldToCell.inverse()),
+      m_clipped(ranges.size()),
+      m_unclipped(mixture ? ranges.size() : 0) {
+  forEachCell(m_cellCount, [&](std::size_t cell, const Size3& position) {
+    const double low = ranges.low(cell), high = ranges.high(cell);
+    if (!mixture) {
+      m_clipped[cell] = findMaximum(transfer, grid, low, high);
+      return;
+    }
+    const CellBound bound = boundMixture(*mixture, grid, corners(position), low, high);
+    m_clipped[cell] = bound.clipped;
+    m_unclipped[cell] = bound.unclipped;
+  });
+}
 
-  const Vec3 marginInCells = margin * ranges.cellSize().cast<double>().cwiseInverse();
-  tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), [&](std::int64_t z) {
-    for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
-      for (std::int64_t x = 0; x < m_cellCount.x(); ++x) {
-        const auto cell = static_cast<std::size_t>(x + m_cellCount.x() * (y + m_cellCount.y() * z));
-        const double low = ranges.low(cell), high = ranges.high(cell);
-        const auto corners = [&] {
-          return findCorners(cellToWorld, Size3(x, y, z).cast<double>(), marginInCells);
-        };
-        const CellBound bound = mixture ? boundMixture(*mixture, grid, corners(), low, high)
-                                        : CellBound{findMaximum(transfer, grid, low, high)};
-        m_cells[cell] = bound.clipped > 0.0 || bound.unclipped > 0.0
-                            ? makeCell(bound, corners(), clip, style)
-                            : Cell{0.0F, false};
-      }
+Corners ExtinctionBounds::corners(const Size3& cell) const {
+  const Vec3 margin = MajorantGrid::margin * m_edge.cast<double>().cwiseInverse(); // in cells
+  const Vec3 lower = cell.cast<double>();
+  const Box box{lower - margin, lower + margin + Vec3::Ones()};
+  Corners corners;
+  for (int i = 0; i < 8; ++i)
+    corners[static_cast<std::size_t>(i)] = m_cellToWorld * box.corner(i);
+  return corners;
+}
+
+MajorantGrid::MajorantGrid(const ExtinctionBounds& bounds, const Clip& clip,
+                           const ContextStyle* style)
+    : m_cellCount(bounds.cellCount()),
+      m_edge(bounds.edge()),
+      m_worldToCell(bounds.worldToCell()),
+      m_cells(static_cast<std::size_t>(m_cellCount.prod())) {
+  forEachCell(m_cellCount, [&](std::size_t cell, const Size3& position) {
+    const double clipped = bounds.clipped(cell), unclipped = bounds.unclipped(cell);
+    m_cells[cell] = clipped > 0.0 || unclipped > 0.0
+                        ? makeCell(clipped, unclipped, bounds.corners(position), clip, style)
+                        : Cell{0.0F, false};
   });
 }
 

@@ -10,6 +10,37 @@
 
 namespace fenestra::core {
 
+/// Upper bounds of the extinction in the cells of a grid, before clip and style: what does not
+/// depend on the camera.
+class ExtinctionBounds {
+public:
+  /// The bound of a cell is the product of two maxima over it: the transfer function over the
+  /// cell's range of scalars (opacity need not grow with the scalar), and the gradient opacity that
+  /// this range allows. For a mixture it is the maximum over the components present in the cell,
+  /// since label weights sum to 1. `ranges` must have the padding
+  /// MajorantGrid::requiredPadding().
+  ExtinctionBounds(const Grid& grid, const MinMaxGrid& ranges, const TransferFunction& transfer,
+                   const Mixture* mixture = nullptr);
+
+  const Size3& cellCount() const { return m_cellCount; }
+  /// Size of a cell, voxels per axis.
+  const Size3& edge() const { return m_edge; }
+  /// World space to cell space, in which cell c covers [c, c + 1].
+  const Affine& worldToCell() const { return m_worldToCell; }
+  /// Corners of a cell enlarged by MajorantGrid::margin, world mm.
+  Corners corners(const Size3& cell) const;
+
+  /// Of components that the clip can remove, mm^-1.
+  double clipped(std::size_t cell) const { return m_clipped[cell]; }
+  /// Of components that it cannot remove, mm^-1.
+  double unclipped(std::size_t cell) const { return m_unclipped.empty() ? 0.0 : m_unclipped[cell]; }
+
+private:
+  Size3 m_cellCount, m_edge;
+  Affine m_worldToCell, m_cellToWorld;
+  std::vector<double> m_clipped, m_unclipped; ///< unclipped: empty without a mixture
+};
+
 class MajorantGrid {
 public:
   struct Cell {
@@ -17,14 +48,14 @@ public:
     bool isCut;     ///< clip weight may be below 1 in the cell: evaluate it at each collision
   };
 
-  /// The majorant is the product of three maxima over the cell: the transfer function over the
-  /// cell's range of scalars (opacity need not grow with the scalar), the gradient opacity that
-  /// this range allows, and clip weight times the style's factor. For a mixture it is the maximum
-  /// over the components present in the cell, since label weights sum to 1. `ranges` must have the
-  /// padding requiredPadding().
+  /// The majorant is the product of the cell's bound and the maximum, over the cell, of the clip
+  /// weight times the style's factor.
+  MajorantGrid(const ExtinctionBounds& bounds, const Clip& clip,
+               const ContextStyle* style = nullptr);
   MajorantGrid(const Grid& grid, const MinMaxGrid& ranges, const TransferFunction& transfer,
                const Clip& clip, const ContextStyle* style = nullptr,
-               const Mixture* mixture = nullptr);
+               const Mixture* mixture = nullptr)
+      : MajorantGrid(ExtinctionBounds(grid, ranges, transfer, mixture), clip, style) {}
 
   /// The bound of a cell also holds this far outside it, in voxels: SIMD tracking steps up to half
   /// of it past a face. MinMaxGrid bounds scalars even half a voxel outside a cell.
