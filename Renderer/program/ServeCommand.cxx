@@ -82,7 +82,7 @@ private:
     RenderRequest request = options.scene;
     request.width = rung.reduce(request.width);
     request.height = rung.reduce(request.height);
-    request.featureEffort = rung.isFull() ? FeatureEffort::full : FeatureEffort::draft;
+    request.isDraft = !rung.isFull();
     const auto earlier = m_scenes.find(rung.scale);
     PreparedScene scene =
         m_scene ? m_scene->withRequest(request, stop,

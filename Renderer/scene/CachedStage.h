@@ -42,7 +42,7 @@ public:
   /// Returns function(arguments...), from the cache if the arguments equal those of the last call.
   /// Throws what the function throws.
   Handle<Result> get(const std::remove_cvref_t<Arguments>&... arguments) {
-    if (!m_cached || m_cached->key != std::tie(arguments...)) {
+    if (!isCached(arguments...)) {
       const Stopwatch watch;
       m_cached.reset(new Entry{{arguments...}, std::invoke(function, arguments...)});
       m_seconds = watch.seconds();
@@ -52,6 +52,11 @@ public:
     else
       m_result = m_cached->result;
     return m_result;
+  }
+
+  /// True if get() would return the result of the last call.
+  bool isCached(const std::remove_cvref_t<Arguments>&... arguments) const {
+    return m_cached && m_cached->key == std::tie(arguments...);
   }
 
   /// Null if get() was not called since markUnused().

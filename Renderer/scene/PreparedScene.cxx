@@ -123,10 +123,10 @@ void PreparedScene::prepare(const StopFlag& stop) {
       m_transfer.get(raw, m_namedTransfer.result(), m_sceneTransfer.result(), m_content.result(),
                      r.transferModality, r.shift, r.density, r.gradient);
   requireRunning(stop);
-  const VolumeHandle volume = smooth();
+  const VolumeHandle volume = smooth(stop);
   requireRunning(stop);
   if (const std::string name = resolveMaterials(allSegments()); name != noMaterials) {
-    makeTint(name);
+    makeTint(name, stop);
     if (!isTintOnly(*m_plan))
       m_mixture.get(m_plan.result(), currentTint(), transfer);
   }
@@ -153,12 +153,13 @@ void PreparedScene::prepare(const StopFlag& stop) {
           ->saturation;
   if (focus->mask && (extinction != 1.0 || saturation != 1.0))
     m_style.get(focus, extinction, saturation);
-  const auto majorants =
-      m_majorants.get(volume, minMaxGrid, transfer, clip, m_style.result(), m_mixture.result());
+  const auto majorants = m_majorants.get(
+      m_bounds.get(volume, minMaxGrid, transfer, m_mixture.result()), clip, m_style.result());
   requireRunning(stop);
   if (r.features)
     m_features.get(volume, settings, transfer, tintOrMixture(), placed, camera, clip,
-                   m_style.result(), majorants, r.featureEffort, {&stop});
+                   m_style.result(), majorants,
+                   r.isDraft ? FeatureEffort::draft : FeatureEffort::full, {&stop});
 }
 
 InputChoice PreparedScene::chooseSegmentation() const {
@@ -169,13 +170,14 @@ InputChoice PreparedScene::chooseSegmentation() const {
   return choice;
 }
 
-VolumeHandle PreparedScene::smooth() {
+VolumeHandle PreparedScene::smooth(const StopFlag& stop) {
   const RenderRequest& r = m_request;
   if (r.smoothing.kind == SmoothingRequest::Kind::off)
     return rawVolume();
-  const auto smoothed =
-      m_smoothed.get(rawVolume(), r.smoothing,
-                     findModality(m_volume->volume, r.transferModality, m_transfer->source));
+  const Modality modality = findModality(m_volume->volume, r.transferModality, m_transfer->source);
+  if (r.isDraft && !m_smoothed.isCached(rawVolume(), r.smoothing, modality, {&stop}))
+    return rawVolume();
+  const auto smoothed = m_smoothed.get(rawVolume(), r.smoothing, modality, {&stop});
   if (smoothed->input && m_transfer->islands)
     m_islands.get(currentVolume(), m_transfer.result(), m_focus.result());
   return currentVolume();
@@ -215,7 +217,7 @@ std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segment
                                                                         : noMaterials;
 }
 
-void PreparedScene::makeTint(const std::string& name) {
+void PreparedScene::makeTint(const std::string& name, const StopFlag& stop) {
   const RenderRequest& r = m_request;
   std::optional<double> saturation = r.focusStyle.contextSaturation;
   if (!saturation && name == libraryMaterials && !r.focus.empty())
@@ -233,8 +235,13 @@ void PreparedScene::makeTint(const std::string& name) {
   const auto segments =
       hasSolidFocus() ? m_separated.get(currentSegments(), m_transparent.result(), rawVolume())
                       : currentSegments();
-  const auto weights = m_labelWeights.get(segments, plan->parts, m_skin.result(),
-                                          r.focusStyle.shaping.smoothing, volume().grid);
+  const auto& smoothing = r.focusStyle.shaping.smoothing;
+  const Handle<Mask> skin = m_skin.result();
+  const bool isSmoothed = !r.isDraft || m_labelWeights.isCached(segments, plan->parts, skin,
+                                                                smoothing, volume().grid, {&stop});
+  const auto weights =
+      m_labelWeights.get(segments, plan->parts, skin, isSmoothed ? smoothing : std::optional(0.0),
+                         volume().grid, {&stop});
   const auto transfer = m_transfer.result();
   const auto tint = m_tint.get(plan, weights, transfer->function.g);
   if (!isAdjusted || !focus())
@@ -259,7 +266,7 @@ StageSeconds PreparedScene::seconds() const {
                        m_adjustedTint.seconds() + m_mixture.seconds(),
           .classify = m_minMaxGrid.seconds() + m_rawMinMaxGrid.seconds() +
                       m_occupiedBounds.seconds() + m_contrast.seconds() + m_style.seconds() +
-                      m_majorants.seconds(),
+                      m_bounds.seconds() + m_majorants.seconds(),
           .focus = clip.focusSeconds,
           .spline = clip.splineSeconds,
           .fill = clip.fillSeconds,

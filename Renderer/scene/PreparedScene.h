@@ -117,11 +117,11 @@ private:
   std::vector<Message> inputWarnings() const;
   /// Name of the materials to use; `segments`: null without labels.
   std::string resolveMaterials(const Handle<SegmentsInput>& segments) const;
-  void makeTint(const std::string& name);
+  void makeTint(const std::string& name, const StopFlag& stop);
   bool hasSolidFocus() const { return m_transparent.result() && !m_transparent->empty(); }
   InputChoice chooseSegmentation() const;
   /// Smooths the volume if the request says so. Returns currentVolume().
-  VolumeHandle smooth();
+  VolumeHandle smooth(const StopFlag& stop);
   VolumeHandle currentVolume() const;
   VolumeHandle rawVolume() const; ///< without the table of the scanner, but not smoothed
   /// Segments as read or, in a request without any, found; null: none.
@@ -148,7 +148,7 @@ private:
                     s.m_labelWeights, s.m_tint, s.m_interfaces, s.m_tintContrast, s.m_adjustedTint,
                     s.m_mixture, s.m_focusWarnings, s.m_view, s.m_minMaxGrid, s.m_rawMinMaxGrid,
                     s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
-                    s.m_majorants, s.m_features);
+                    s.m_bounds, s.m_majorants, s.m_features);
   }
 
   RenderRequest m_request;
@@ -192,6 +192,7 @@ private:
   CachedStage<&buildClip> m_clip;
   CachedStage<&chooseContrast> m_contrast;
   CachedStage<&makeContextStyle> m_style; ///< unused if the context is unchanged
+  CachedStage<&boundExtinction> m_bounds;
   CachedStage<&buildMajorants> m_majorants;
   CachedStage<&marchFirstHits> m_features; ///< unused without the denoiser
 };

@@ -124,7 +124,9 @@ struct RenderRequest {
   ClipRequest clip;
   int width = 512, height = 512;
   bool features = false; ///< compute the feature buffers of the denoiser
-  FeatureEffort featureEffort = FeatureEffort::full;
+  /// A coarse preview: feature buffers of one ray per pixel; volume and labels are not smoothed
+  /// unless an earlier scene has smoothed them.
+  bool isDraft = false;
   bool measure = false; ///< measure the clip; traces the focus even if no clip needs it
   FocusRequest focusStyle = {};
   /// Half-width of the angular window over which a turntable's clipping surface is smoothed,

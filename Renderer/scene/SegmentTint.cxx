@@ -226,10 +226,12 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& input,
 
 LabelWeights computeLabelWeights(const Handle<SegmentsInput>& input,
                                  const std::vector<TintPart>& parts, const Handle<Mask>& skin,
-                                 const std::optional<double>& smoothing, const Grid& volume) {
+                                 const std::optional<double>& smoothing, const Grid& volume,
+                                 const StageStop& stop) {
   const Segmentation& segmentation = input->segmentation;
   std::optional<Grid> labels; // of the preceding parts
   const auto partAt = [&](std::size_t number) -> LabelWeights::Part {
+    requireRunning(*stop.flag);
     const TintPart& part = parts[number];
     // Smoothed parts overlap: a neighbor of equal priority would color part of the focus's surface.
     const int priority = 2 * part.priority + (part.isFocus ? 1 : 0);

@@ -10,6 +10,7 @@
 #include "scene/CachedStage.h"
 #include "scene/Input.h"
 #include "scene/NamedPresets.h"
+#include "scene/StageStop.h"
 
 #include <map>
 
@@ -60,10 +61,11 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& segments,
                       const Handle<TransparentFocus>& transparent);
 
 /// Label weights of the components. `smoothing`: MaskShaping::smoothing. Detected skin is resampled
-/// on the label grid (resampleMask()).
+/// on the label grid (resampleMask()). Throws as requireRunning, soon after the flag was set.
 LabelWeights computeLabelWeights(const Handle<SegmentsInput>& segments,
                                  const std::vector<TintPart>& parts, const Handle<Mask>& skin,
-                                 const std::optional<double>& smoothing, const Grid& volume);
+                                 const std::optional<double>& smoothing, const Grid& volume,
+                                 const StageStop& stop = {});
 
 /// `g`: mean cosine of the phase function, which relates albedo and reflected color.
 Tint buildTint(const Handle<TintPlan>& plan, const Handle<LabelWeights>& weights, double g);

@@ -421,15 +421,15 @@ ContextStyle makeContextStyle(const FocusHandle& focus, double extinction, doubl
   return {{focus, &*focus->mask}, extinction, saturation};
 }
 
-MajorantGrid buildMajorants(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
-                            const Handle<TransferChoice>& transfer, const Handle<ClipResult>& clip,
-                            const Handle<ContextStyle>& style, const Handle<Mixture>& mixture) {
-  return {volume->volume.grid, *minMax, transfer->function, clip->clip, style.get(), mixture.get()};
+ExtinctionBounds boundExtinction(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
+                                 const Handle<TransferChoice>& transfer,
+                                 const Handle<Mixture>& mixture) {
+  return {volume->volume.grid, *minMax, transfer->function, mixture.get()};
 }
 
-void requireRunning(const StopFlag& stop) {
-  if (stop)
-    throw requestError(ErrorCode::stopped, "render", "was stopped before the first pass");
+MajorantGrid buildMajorants(const Handle<ExtinctionBounds>& bounds, const Handle<ClipResult>& clip,
+                            const Handle<ContextStyle>& style) {
+  return {*bounds, clip->clip, style.get()};
 }
 
 FeatureBuffers marchFirstHits(const VolumeHandle& volume, const SettingsHandle& settings,

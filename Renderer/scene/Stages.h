@@ -166,10 +166,14 @@ FocusContrast chooseContrast(const VolumeHandle& volume, const FocusHandle& focu
 
 ContextStyle makeContextStyle(const FocusHandle& focus, double extinction, double saturation);
 
-/// `style`: null if the context is unchanged. `mixture`: null without one.
-MajorantGrid buildMajorants(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
-                            const Handle<TransferChoice>& transfer, const Handle<ClipResult>& clip,
-                            const Handle<ContextStyle>& style, const Handle<Mixture>& mixture);
+/// `mixture`: null without one.
+ExtinctionBounds boundExtinction(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
+                                 const Handle<TransferChoice>& transfer,
+                                 const Handle<Mixture>& mixture);
+
+/// `style`: null if the context is unchanged.
+MajorantGrid buildMajorants(const Handle<ExtinctionBounds>& bounds, const Handle<ClipResult>& clip,
+                            const Handle<ContextStyle>& style);
 
 /// Colors or media of the segments, as the integrators use them; null: none.
 struct TintOrMixture {
@@ -178,15 +182,6 @@ struct TintOrMixture {
 
   bool operator==(const TintOrMixture&) const = default;
 };
-
-/// Stop flag of a stage, which is no part of its key.
-struct StageStop {
-  const StopFlag* flag;
-
-  bool operator==(const StageStop& /*other*/) const { return true; }
-};
-/// Throws Error (request, ErrorCode::stopped) if the flag is set.
-void requireRunning(const StopFlag& stop);
 
 /// Feature buffers of the denoiser. `style`: null if the context is unchanged. Throws as
 /// requireRunning, soon after the flag was set.

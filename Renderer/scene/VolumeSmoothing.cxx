@@ -54,9 +54,9 @@ double chooseStrength(Modality modality) {
   return modality == Modality::ct ? 1.1 : 1.0;
 }
 
-/// Estimates the noise unless it is given, and filters.
+/// Estimates the noise unless it is given, and filters. Throws as requireRunning.
 SmoothedVolume filterVolume(const Volume& volume, const SmoothingRequest& request,
-                            Modality modality) {
+                            Modality modality, const StopFlag& stop) {
   const bool isGiven = request.kind == SmoothingRequest::Kind::given;
   SmoothedVolume result{.report = {.isLogarithmic = modality == Modality::us,
                                    .isHounsfield = modality == Modality::ct}};
@@ -68,8 +68,10 @@ SmoothedVolume filterVolume(const Volume& volume, const SmoothingRequest& reques
       volume.minimum == volume.maximum)
     return result;
   report.strength = chooseStrength(modality) * report.noise;
+  requireRunning(stop);
   result.input = {
-      applyNonLocalMeans(volume, {report.noise, report.strength, report.isLogarithmic})};
+      applyNonLocalMeans(volume, {report.noise, report.strength, report.isLogarithmic}, stop)};
+  requireRunning(stop);
   return result;
 }
 
@@ -157,17 +159,17 @@ Modality findModality(const Volume& volume, const std::optional<Modality>& trans
 }
 
 SmoothedVolume smoothVolume(const VolumeHandle& read, const SmoothingRequest& request,
-                            Modality modality) {
+                            Modality modality, const StageStop& stop) {
   const Volume& volume = read->volume;
   if (const auto problem = findMemoryProblem(volume))
     return {.warnings = {*problem}};
   const auto slot = SharedSlot::findInherited();
   if (!slot)
-    return filterVolume(volume, request, modality);
+    return filterVolume(volume, request, modality, *stop.flag);
   const std::uint64_t key = computeKey(volume, request, modality);
   if (auto reused = readResult(*slot, key, volume, modality))
     return std::move(*reused);
-  SmoothedVolume result = filterVolume(volume, request, modality);
+  SmoothedVolume result = filterVolume(volume, request, modality, *stop.flag);
   if (result.input)
     std::visit(
         [&](const auto& voxels) {

@@ -2,6 +2,7 @@
 // Stages that reduce noise in the volume, and their report.
 
 #include "model/filtering/SmoothingRequest.h"
+#include "scene/StageStop.h"
 #include "scene/Stages.h"
 
 namespace fenestra::core {
@@ -42,9 +43,10 @@ Modality findModality(const Volume& volume, const std::optional<Modality>& trans
 /// Non-local means with the noise of the request, else with estimated noise; then noise below 3 HU
 /// or, for other modalities, 0.3 % of the range leaves the volume unchanged, as does, with
 /// a warning, a machine with less memory than three volumes need. In a batch, uses the result of an
-/// earlier row for the same volume and request, bit for bit the same (io/SharedSlot).
+/// earlier row for the same volume and request, bit for bit the same (io/SharedSlot). Throws as
+/// requireRunning, soon after the flag was set.
 SmoothedVolume smoothVolume(const VolumeHandle& volume, const SmoothingRequest& request,
-                            Modality modality);
+                            Modality modality, const StageStop& stop);
 
 /// Removes islands of opacity that are smaller than TransferChoice::islands, which must be set,
 /// except those with a voxel in the focus.

@@ -270,6 +270,26 @@ TEST_F(SceneChange, SmoothedVolumeIsReused) {
   EXPECT_EQ(&raw.withRequest(request).volume(), &before.volume()) << "kept while off";
 }
 
+TEST_F(SceneChange, DraftsUseOnlyWhatEarlierScenesHaveSmoothed) {
+  request.smoothing = {SmoothingRequest::Kind::given, 20.0};
+  request.focusStyle.shaping.smoothing = 0.5;
+  request.materials = "library";
+  RenderRequest draft = request;
+  draft.isDraft = true;
+  const PreparedScene first(draft);
+  EXPECT_FALSE(first.smoothing());
+  const PreparedScene full = first.withRequest(request);
+  EXPECT_TRUE(full.smoothing());
+  EXPECT_NE(full.tint()->weights, first.tint()->weights);
+  const Film expected = renderFilm(PreparedScene(request)), film = renderFilm(full);
+  for (std::size_t i = 0; i < film.pixelCount(); ++i)
+    ASSERT_TRUE(film.pixels()[i].mean == expected.pixels()[i].mean) << "pixel " << i;
+  draft.view.name = "left";
+  const PreparedScene second = full.withRequest(draft);
+  EXPECT_EQ(&second.volume(), &full.volume());
+  EXPECT_EQ(second.tint()->weights, full.tint()->weights);
+}
+
 TEST_F(SceneChange, ColorChangesReuseTheLabels) {
   request.materials = "library";
   const PreparedScene before(request);

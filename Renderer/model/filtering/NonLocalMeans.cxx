@@ -127,7 +127,7 @@ public:
         m_unit(filter.isLogarithmic ? volume.maximum - volume.minimum : filter.strength),
         m_out(voxels.size()) {}
 
-  LargeArray<Voxel> run() && {
+  LargeArray<Voxel> run(const StopFlag& stop) && {
     const Size3& size = m_volume.grid.size;
     const Size3 tiles =
         (size + PatchTile::largest() - Size3::Ones()).array() / PatchTile::largest().array();
@@ -136,6 +136,8 @@ public:
         listSteps(m_volume.grid), static_cast<float>(2.0 * ratio * ratio / 16.0),
         m_filter.isLogarithmic);
     tbb::parallel_for(std::int64_t{0}, tiles.prod(), [&](std::int64_t i) {
+      if (stop)
+        return;
       const Size3 tile(i % tiles.x(), i / tiles.x() % tiles.y(), i / tiles.x() / tiles.y());
       filterTile(tile.cwiseProduct(PatchTile::largest()), workspaces.local());
     });
@@ -188,8 +190,8 @@ private:
 
 template <typename Voxel>
 LargeArray<Voxel> filterVoxels(const Volume& volume, const LargeArray<Voxel>& voxels,
-                               const NonLocalMeans& filter) {
-  return Filter<Voxel>(volume, voxels, filter).run();
+                               const NonLocalMeans& filter, const StopFlag& stop) {
+  return Filter<Voxel>(volume, voxels, filter).run(stop);
 }
 
 } // namespace
@@ -203,15 +205,16 @@ Volume copyWithoutVoxels(const Volume& volume) {
           .hasContrastAgent = volume.hasContrastAgent};
 }
 
-Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter) {
+Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter, const StopFlag& stop) {
   constexpr double leastStrength = 1e-12; // of the range: squares of differences stay finite
   const double range = filter.isLogarithmic ? std::log1p(volume.maximum - volume.minimum)
                                             : volume.maximum - volume.minimum;
   if (!(filter.strength > leastStrength * range) || range == 0.0)
     return volume;
   Volume result = copyWithoutVoxels(volume);
-  std::visit([&](const auto& voxels) { result.voxels = filterVoxels(volume, voxels, filter); },
-             volume.voxels);
+  std::visit(
+      [&](const auto& voxels) { result.voxels = filterVoxels(volume, voxels, filter, stop); },
+      volume.voxels);
   computeRange(result);
   return result;
 }

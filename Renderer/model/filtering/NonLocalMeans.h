@@ -2,6 +2,7 @@
 // Non-local means: each voxel becomes a mean of voxels around it, weighted by how similar their
 // surroundings are (Buades, Coll, Morel 2005). Noise falls, edges stay.
 
+#include "base/StopFlag.h"
 #include "model/volume/Volume.h"
 
 namespace fenestra::core {
@@ -19,8 +20,10 @@ struct NonLocalMeans {
 /// other, at least 1/1000. y is within a ball of 47 voxels' volume, at most 3 voxels away on each
 /// axis; neighbors on the axes always count. Beyond the volume, its border voxels repeat. Keeps the
 /// voxel type (integers are rounded) and stays within the volume's range. Results do not depend on
-/// threads or instruction set. A strength below 10^-12 of the range changes nothing.
-Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter);
+/// threads or instruction set. A strength below 10^-12 of the range changes nothing. The result is
+/// incomplete if `stop` was set meanwhile.
+Volume applyNonLocalMeans(const Volume& volume, const NonLocalMeans& filter,
+                          const StopFlag& stop = neverStopped);
 
 /// Copy of a volume without its voxels and their range.
 Volume copyWithoutVoxels(const Volume& volume);
