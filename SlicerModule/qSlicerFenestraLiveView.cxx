@@ -143,7 +143,8 @@ void qSlicerFenestraLiveView::onViewChanged() {
       (camera && camera->IsSame(m_seen))) // only the clipping range has changed, for example
     return;
   m_seen = camera.value_or(FenestraViewCamera{});
-  m_state.moveCamera(now());
+  if (m_state.moveCamera(now()))
+    m_session->pausePreview();
   clearImage();
   advance();
 }

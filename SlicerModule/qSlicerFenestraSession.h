@@ -67,6 +67,8 @@ public:
   /// Previews settings with other flags for camera, size and background from now on, instead of
   /// preview(); null: ends that.
   void previewView(vtkMRMLFenestraRenderNode* settings, const Flags& view);
+  /// Ends the render of the current preview, whose view changes. The next change continues.
+  void pausePreview() { m_preview.pause(); }
 
   /// Generates the synthetic sample knee, then calls `then` with the path of its scene or with an
   /// error message. `sampleProgressed` reports the time until then. Ignored while one is generated.

@@ -281,8 +281,9 @@ const CommandSyntax& serveSyntax() {
       "serve",
       "Keeps a scene loaded and renders it again after every change, for previews. Reads changes "
       "from standard input, one JSON object of options per line, as {\"id\": 7, \"view\": "
-      "\"left\", \"focus\": [\"Femur\", \"Tibia\"]}; null removes an option. Every refreshed image "
-      "replaces the output files atomically. Images and errors are reported on standard output: "
+      "\"left\", \"focus\": [\"Femur\", \"Tibia\"]}; null removes an option; "
+      "{\"pause\": true} stops rendering until the next change. Every refreshed image replaces the "
+      "output files atomically. Images and errors are reported on standard output: "
       "{\"event\": \"picture\" or \"error\", \"id\": 7, ...}. Ends with its input. Accepts the "
       "options of fenestra render; unless given, --device is auto.",
       renderSyntax.positionals,

@@ -68,6 +68,14 @@ json readId(const json& change) {
   return id;
 }
 
+bool isPause(const json& change) {
+  if (!change.is_object() || !change.contains("pause"))
+    return false;
+  if (change.size() > 1 || change["pause"] != true)
+    throw usageError("pause: must be alone and true, as {\"pause\": true}");
+  return true;
+}
+
 OptionValues applyChange(const json& change, const OptionValues& values) {
   if (!change.is_object())
     throw usageError("expected a JSON object of options, as {\"view\": \"left\"}");
@@ -160,6 +168,10 @@ void ServeInput::handleLine(const std::string& line) {
     change.options = parseJson(line, "a line");
     change.id = readId(change.options);
     const std::lock_guard lock(m_mutex);
+    if (isPause(change.options)) {
+      m_monitor.stop = true;
+      return;
+    }
     OptionValues requested = applyChange(change.options, m_requested);
     checkChange(change.options, requested, m_input);
     m_requested = std::move(requested);

@@ -30,6 +30,10 @@ using ServeChanges = std::vector<ServeChange>;
 /// The id of a change; null: none. Throws Error (usage) for an id of any other type.
 nlohmann::json readId(const nlohmann::json& change);
 
+/// True for {"pause": true}, which ends the render; the next change renders again. Throws Error
+/// (usage) for anything else with that key.
+bool isPause(const nlohmann::json& change);
+
 /// Option values after a change. A value is a text, a number, or a list of them, as on the command
 /// line; null removes the option. Throws Error (usage) for unknown or fixed options.
 OptionValues applyChange(const nlohmann::json& change, const OptionValues& values);
@@ -38,13 +42,13 @@ OptionValues applyChange(const nlohmann::json& change, const OptionValues& value
 /// transfer function or materials that it names cannot be read.
 void checkChange(const nlohmann::json& change, const OptionValues& values, const Input& input);
 
-/// Reads standard input in its own thread. Each change stops the current render. The end of input
-/// ends the process (endProcess).
+/// Reads standard input in its own thread. Each change, and each pause, stops the current render.
+/// The end of input ends the process (endProcess).
 class ServeInput {
 public:
   ServeInput(const OptionValues& start, const Input& input, RenderMonitor& monitor);
 
-  /// Waits for changes and returns them. From then on only newer changes stop the render.
+  /// Waits for changes and returns them. From then on only newer lines stop the render.
   ServeChanges next();
   /// Call if returned changes were rejected: newer changes then apply to `shown`.
   void revert(const OptionValues& shown);

@@ -57,6 +57,13 @@ void qFenestraPreview::change(const QJsonObject& flags) {
     m_delay.start();
 }
 
+void qFenestraPreview::pause() {
+  if (!running())
+    return;
+  m_child->write(QByteArrayLiteral("{\"pause\": true}\n"));
+  m_isWaiting = false; // the last change may get no reply
+}
+
 QJsonObject qFenestraPreview::toJson(const std::map<std::string, std::string>& flags) {
   QJsonObject all;
   for (const auto& [name, value] : flags) {

@@ -38,6 +38,8 @@ public:
   /// the render of the one before. It is therefore sent once there is an image of that one, so that
   /// images arrive however fast the changes are.
   void change(const QJsonObject& flags);
+  /// Ends the current render. Later changes continue.
+  void pause();
   /// Flags as `fenestra serve` takes them: a string, or a list of strings for a repeatable flag.
   static QJsonObject toJson(const std::map<std::string, std::string>& flags);
 

@@ -13,11 +13,13 @@ void LiveState::turnOff() {
   *this = {};
 }
 
-void LiveState::moveCamera(double now) {
+bool LiveState::moveCamera(double now) {
+  const bool hasRested = isOn() && m_phase != Phase::turning;
   m_phase = Phase::turning;
   m_requestTime = now + restSeconds;
   m_shownTime = -never;
   m_hasImage = false;
+  return hasRested;
 }
 
 void LiveState::change(double now) {

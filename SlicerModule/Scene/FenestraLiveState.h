@@ -26,8 +26,9 @@ public:
 
   void turnOn(double now);
   void turnOff();
-  /// The camera or the size of the view has changed.
-  void moveCamera(double now);
+  /// The camera or the size of the view has changed. True if it rested before: the renderer works
+  /// for a former camera, and is to pause.
+  bool moveCamera(double now);
   /// Anything else that the image shows has changed. While the camera moves, nothing more is to do.
   void change(double now);
   /// An image of the camera has arrived, that shows all changes.

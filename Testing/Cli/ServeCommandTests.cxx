@@ -181,6 +181,25 @@ TEST_F(ServeCommand, ChangedViewEndsWithTheDenoisedImageOfRender) {
   EXPECT_EQ(readBytes(folder / "a.png"), readBytes(folder / "b.png"));
 }
 
+TEST_F(ServeCommand, PauseEndsTheRenderAndTheNextChangeContinues) {
+  Process process(makeArguments("16x16", "100000000"), folder.path());
+  ASSERT_TRUE(process.waitForOutput("picture"));
+  process.write(R"({"pause": false})"
+                "\n"
+                R"({"pause": true, "view": "left"})"
+                "\n"
+                R"({"pause": true})"
+                "\n");
+  EXPECT_TRUE(process.waitForOutput("\"error\"[^\n]*pause[^\n]*\n[^\n]*\"error\"[^\n]*pause"));
+  double before = -1.0;
+  EXPECT_TRUE(process.waitUntil([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    return std::exchange(before, process.cpuSeconds()) == process.cpuSeconds();
+  })) << "it still renders";
+  process.write("{\"id\": 2, \"samples\": 4}\n");
+  ASSERT_TRUE(waitForImage(process, "2")) << process.output();
+}
+
 /// If an image cannot be written, as on a full disk, the render and the server continue.
 TEST_F(ServeCommand, WriteFailureGivesAnErrorAndServingContinues) {
   const std::filesystem::path resultFolder = folder / "results";

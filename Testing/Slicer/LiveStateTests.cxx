@@ -54,6 +54,22 @@ TEST_F(SlicerLiveState, TurnedOnItAsksAtOnceAndShowsTheFirstImageAtOnce) {
   EXPECT_EQ(state.phase(), Phase::refining);
 }
 
+TEST_F(SlicerLiveState, TheFirstMoveAfterARestPauses) {
+  EXPECT_FALSE(state.moveCamera(now)); // off: there is no renderer
+  state.turnOff();
+  state.turnOn(now);
+  EXPECT_FALSE(state.moveCamera(now)); // nothing is requested yet
+  advanceTo(now + 1.0);
+  EXPECT_EQ(state.phase(), Phase::waiting);
+  EXPECT_TRUE(state.moveCamera(now));
+  EXPECT_FALSE(state.moveCamera(now));
+  advanceTo(now + 1.0);
+  state.receive(true);
+  advance();
+  EXPECT_EQ(state.phase(), Phase::done);
+  EXPECT_TRUE(state.moveCamera(now));
+}
+
 TEST_F(SlicerLiveState, AsksOnceWhenTheCameraRests) {
   state.turnOn(now);
   advance();

@@ -332,6 +332,19 @@ TEST_F(SlicerPreview, ImagesArriveDuringFastChanges) {
   EXPECT_GT(changes, 3);
 }
 
+TEST_F(SlicerPreview, ChangesContinueAfterAPause) {
+  start("100000000");
+  ASSERT_TRUE(waitFor([this] { return !images.empty(); }));
+  preview.change({{"view", "left"}});
+  QCoreApplication::processEvents(); // sends it; the pause may come before its image
+  preview.pause();
+  images.clear();
+  preview.change({{"view", "right"}, {"samples", 4}});
+  ASSERT_TRUE(waitForDone());
+  EXPECT_EQ(images.back().frame->samples, 4U);
+  EXPECT_TRUE(refusals.isEmpty());
+}
+
 /// The file of the images grows, and is mapped again.
 TEST_F(SlicerPreview, LargerImagesFollowSmallerOnes) {
   start("1");
