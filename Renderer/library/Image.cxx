@@ -196,7 +196,7 @@ void Image::save(const std::string& path, const Display& display) const {
   guard([&] {
     core::Outputs outputs;
     core::declareImage(path, outputs, core::NameOrigin::user,
-                       m_data->denoised.empty() ? core::HasDenoised::no : core::HasDenoised::yes);
+                       {.denoised = !m_data->denoised.empty()});
     core::writeImage(toChannels(*m_data, core::isDisplayFile(path)), m_data->plane, path, outputs,
                      makeDisplay(display, *m_data));
     outputs.commit();

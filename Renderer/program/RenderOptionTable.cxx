@@ -330,7 +330,9 @@ struct RenderOptionTable {
        ValueSpec::notInPanel().bind(scene.isStrict, readSwitch), OverrideGroup::process},
       {"layers", "L,...", outputGroup,
        "Channels of .exr: color, depth, clip, albedo, normal, error, samples, and with --denoise "
-       "on denoised, expected; of .nrrd: color, depth and denoised (separate files) [all]",
+       "on denoised, expected, depth50 (where half of the light is stopped; if named, also of raw "
+       "images beside a denoised .png); of .nrrd: color, and as separate files depth, denoised and "
+       "depth50 [all]",
        ValueSpec::list()
            .bind(options.layers, readLayers)
            .withDefault("color") // Slicer takes one file

@@ -147,6 +147,11 @@ void resolveDenoising(const OptionValues& values, RenderOptions& options) {
   const bool hasDisplay = std::ranges::any_of(options.outputs, isDisplayFile);
   const bool hasLayers = options.hasFilterLayer("denoised") || options.hasFilterLayer("expected");
   options.scene.features = options.denoise != Denoise::off && (hasDisplay || hasLayers);
+  if (options.denoise != Denoise::on && !values.has("layers")) // only if named
+    options.layers.erase("depth50");
+  if (options.layers.contains("depth50") && !options.scene.features)
+    throw usageError(
+        "--layers: depth50 requires denoising; add --denoise on, or write a .png, too");
   if (options.denoise == Denoise::on && !hasLayers)
     throw usageError(
         "--denoise: on requires the layer denoised or expected; add one to --layers, or "

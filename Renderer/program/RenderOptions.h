@@ -52,8 +52,8 @@ struct RenderOptions {
   bool hasFilterLayer(const std::string& layer) const {
     return denoise == Denoise::on && layers.contains(layer);
   }
-  HasDenoised filteredFiles() const {
-    return hasFilterLayer("denoised") ? HasDenoised::yes : HasDenoised::no;
+  ExtraFiles extraFiles() const {
+    return {.denoised = hasFilterLayer("denoised"), .depth50 = layers.contains("depth50")};
   }
 };
 

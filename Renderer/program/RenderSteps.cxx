@@ -79,7 +79,7 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs) {
   for (const std::filesystem::path& input : options.inputs)
     registerInput(input);
   for (const std::filesystem::path& path : options.outputs)
-    declareImage(path, outputs, options.outputNaming, options.filteredFiles());
+    declareImage(path, outputs, options.outputNaming, options.extraFiles());
   if (options.surface)
     declareSurface(*options.surface, outputs);
   for (const auto& file : {options.stats, options.returnValues, options.checkpoint})
@@ -106,6 +106,8 @@ void writeImages(const RenderOptions& options, const PreparedScene& scene,
   if (isRawWanted) {
     Image channels = makeImage(result.film, scene.camera(), scene.clip(), options.layers);
     raw.channels = std::move(channels.channels);
+    if (options.layers.contains("depth50"))
+      raw.channels["depth50"] = scene.features()->depth50;
   }
   if (filtered) {
     shown.channels = makeFilteredImage(*filtered, raw.width, raw.height).channels;

@@ -215,7 +215,7 @@ void declareFrames(const TurntableOptions& options, const TurntableManifest& man
     const bool mustBeOwn = !options.restart && !manifest.finished().contains(frame);
     for (const std::filesystem::path& path : options.images(frame))
       declareImage(path, outputs, mustBeOwn ? NameOrigin::standard : options.render.outputNaming,
-                   options.render.filteredFiles());
+                   options.render.extraFiles());
   }
   if (options.render.stats)
     outputs.add(*options.render.stats);

@@ -79,6 +79,8 @@ std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
       files.push_back(parts[1]);
     if (render.hasFilterLayer("denoised"))
       files.push_back(parts[2]);
+    if (render.layers.contains("depth50"))
+      files.push_back(parts[3]);
   }
   return files;
 }

@@ -21,7 +21,7 @@ LayerSet parseLayers(const std::vector<std::string>& names) {
     if (!allLayers.contains(name))
       throw requestError(ErrorCode::unknownName, "layers", "'", name,
                          "' is unknown; use color, depth, clip, albedo, normal, error, samples, "
-                         "denoised, expected");
+                         "denoised, expected, depth50");
   return names.empty() ? allLayers : LayerSet(names.begin(), names.end());
 }
 

@@ -14,8 +14,8 @@ namespace fenestra::core {
 /// Names of channel groups, as in --layers.
 using LayerSet = std::set<std::string>;
 
-inline const LayerSet allLayers = {"color", "depth",   "clip",     "albedo",  "normal",
-                                   "error", "samples", "denoised", "expected"};
+inline const LayerSet allLayers = {"color", "depth",   "clip",     "albedo",   "normal",
+                                   "error", "samples", "denoised", "expected", "depth50"};
 
 /// Layers with these names; an empty list selects all. Throws Error (request) for an unknown name.
 LayerSet parseLayers(const std::vector<std::string>& names);

@@ -201,12 +201,15 @@ Affine makeSliceToWorld(const ImagePlane& plane) {
 }
 
 /// `values`: one or more floats per pixel.
+/// `keys`: entries of the image's header to write, if present.
 std::string encodeSlice(const Image& image, const ImagePlane& plane,
-                        const std::vector<float>& values) {
+                        const std::vector<float>& values,
+                        std::initializer_list<const char*> keys = {"volume"}) {
   const std::size_t components = values.size() / image.channels.at("R").size();
   NrrdFields fields = {{"Software", std::string(blankProvenanceTag)}};
-  if (const auto volume = image.header.find("volume"); volume != image.header.end())
-    fields.emplace_back(*volume);
+  for (const char* key : keys)
+    if (const auto entry = image.header.find(key); entry != image.header.end())
+      fields.emplace_back(*entry);
   const NrrdHeader header{.type = "float",
                           .leadingKind = components > 1 ? "vector" : "",
                           .leadingCount = components,
@@ -295,8 +298,10 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
   requireColor(image, path);
   if (format == ImageFormat::nrrd) {
     outputs.write(path, encodeSlice(image, plane, interleaveRgba(image)));
-    if (const std::vector<float>* depth = image.find("Z"))
-      outputs.write(makeSiblingPath(path, "Z"), encodeSlice(image, plane, *depth));
+    for (const char* depth : {"Z", "depth50"})
+      if (const std::vector<float>* values = image.find(depth))
+        outputs.write(makeSiblingPath(path, depth),
+                      encodeSlice(image, plane, *values, {"volume", "camera"}));
     if (image.find("denoised.R"))
       outputs.write(makeSiblingPath(path, "denoised"),
                     encodeSlice(image, plane, interleaveRgba(image, "denoised.")));
@@ -310,12 +315,13 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
 
 std::vector<std::filesystem::path> listImageFiles(const std::filesystem::path& path) {
   if (requireFormat(path) == ImageFormat::nrrd)
-    return {path, makeSiblingPath(path, "Z"), makeSiblingPath(path, "denoised")};
+    return {path, makeSiblingPath(path, "Z"), makeSiblingPath(path, "denoised"),
+            makeSiblingPath(path, "depth50")};
   return {path};
 }
 
 void declareImage(const std::filesystem::path& path, Outputs& outputs, NameOrigin origin,
-                  HasDenoised hasDenoised) {
+                  const ExtraFiles& extra) {
   const ImageFormat format = requireFormat(path);
   if (origin == NameOrigin::user)
     outputs.add(path);
@@ -325,8 +331,10 @@ void declareImage(const std::filesystem::path& path, Outputs& outputs, NameOrigi
     return;
   outputs.add(makeSiblingPath(path, "Z"),
               [path](const auto& depth) { return isFenestraDepth(depth, path); });
-  if (hasDenoised == HasDenoised::yes)
+  if (extra.denoised)
     outputs.add(makeSiblingPath(path, "denoised"), hasProvenanceTag);
+  if (extra.depth50)
+    outputs.add(makeSiblingPath(path, "depth50"), hasProvenanceTag);
 }
 
 } // namespace fenestra::core
