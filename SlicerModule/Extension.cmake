@@ -32,7 +32,8 @@ slicerMacroBuildLoadableModule(
                       ${FENESTRA_PORTABLE_INCLUDE_DIR}
                       ${qSlicerSubjectHierarchyModuleWidgets_INCLUDE_DIRS}
                       ${vtkSlicerFenestraModuleMRMLDisplayableManager_INCLUDE_DIRS}
-  SRCS qSlicerFenestraLiveView.cxx qSlicerFenestraLiveView.h
+  SRCS qSlicerFenestraImageClicks.cxx qSlicerFenestraImageClicks.h
+       qSlicerFenestraLiveView.cxx qSlicerFenestraLiveView.h
        qSlicerFenestraModule.cxx qSlicerFenestraModule.h
        qSlicerFenestraModuleWidget.cxx qSlicerFenestraModuleWidget.h
        qSlicerFenestraResults.cxx qSlicerFenestraResults.h
@@ -40,8 +41,8 @@ slicerMacroBuildLoadableModule(
        qSlicerFenestraSessionPreview.cxx
        qSlicerSubjectHierarchyFenestraPlugin.cxx qSlicerSubjectHierarchyFenestraPlugin.h
        ${widget_sources}
-  MOC_SRCS qSlicerFenestraLiveView.h qSlicerFenestraModule.h qSlicerFenestraModuleWidget.h
-           qSlicerFenestraSession.h qSlicerSubjectHierarchyFenestraPlugin.h
+  MOC_SRCS qSlicerFenestraImageClicks.h qSlicerFenestraLiveView.h qSlicerFenestraModule.h
+           qSlicerFenestraModuleWidget.h qSlicerFenestraSession.h qSlicerSubjectHierarchyFenestraPlugin.h
            ${widget_moc_sources}
   UI_SRCS Resources/UI/qSlicerFenestraModuleWidget.ui ${widget_ui_sources}
   TARGET_LIBRARIES vtkSlicer${MODULE_NAME}ModuleLogic

@@ -1,5 +1,6 @@
 #include "qSlicerFenestraModule.h"
 
+#include "qSlicerFenestraImageClicks.h"
 #include "qSlicerFenestraLiveView.h"
 #include "qSlicerFenestraModuleWidget.h"
 #include "qSlicerFenestraSession.h"
@@ -31,7 +32,8 @@ vtkSlicerFenestraLogic* qSlicerFenestraModule::fenestraLogic() {
 void qSlicerFenestraModule::setup() {
   Superclass::setup();
   m_session = new qSlicerFenestraSession(fenestraLogic(), program(), this);
-  new qSlicerFenestraLiveView(fenestraLogic(), m_session); // the session owns it
+  new qSlicerFenestraLiveView(fenestraLogic(), m_session); // the session owns it and the next
+  new qSlicerFenestraImageClicks(fenestraLogic(), m_session);
   qSlicerSubjectHierarchyPluginHandler::instance()->registerPlugin(
       new qSlicerSubjectHierarchyFenestraPlugin(fenestraLogic()));
   vtkMRMLThreeDViewDisplayableManagerFactory::GetInstance()->RegisterDisplayableManager(

@@ -272,17 +272,18 @@ bool vtkSlicerFenestraLogic::HasSurface(Node* render) {
 std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool withSurface) {
   if (!render)
     return {};
+  const std::map<std::string, std::string> flags = render->GetFlags();
+  const auto denoise = flags.find("denoise");
+  const bool isDenoised = denoise == flags.end() || denoise->second != "off";
   std::vector<std::string> arguments = {"--stats=stats.json", "--device=auto"};
   if (render->IsTurntable())
     arguments.push_back("--output=frame.png");
   else // slow compression of further layers would delay a stop
-    arguments.insert(arguments.end(), {"--output=picture.png", "--output=picture.exr",
-                                       "--output=radiance.nrrd", "--layers=color,depth"});
+    arguments.insert(arguments.end(),
+                     {"--output=picture.png", "--output=picture.exr", "--output=radiance.nrrd",
+                      isDenoised ? "--layers=color,depth,depth50" : "--layers=color,depth"});
   if (withSurface && !render->IsTurntable())
     arguments.push_back("--surface=surface.vtp");
-  const std::map<std::string, std::string> flags = render->GetFlags();
-  const auto denoise = flags.find("denoise");
-  const bool isDenoised = denoise == flags.end() || denoise->second != "off";
   if (isDenoised && flags.count("noise") > 0 && flags.count("noisetarget") == 0)
     arguments.push_back("--noisetarget=denoised");
   const std::vector<std::string> values = SlicerExport::toArguments(flags);

@@ -154,6 +154,15 @@ public:
   void ShowLayoutBefore();
   /// Render whose image the module's layout shows; null: none.
   vtkMRMLFenestraRenderNode* GetShownRender();
+  /// The anatomy that the render's image shows at a pixel, counted from 0 at the upper left: where
+  /// half of the light is stopped (without denoising: the mean of the first collisions), RAS, mm.
+  /// False: there is nothing, or the image has no depth, such as that of a turntable.
+  bool GetImagePoint(vtkMRMLFenestraRenderNode* render, double column, double row, double point[3]);
+  /// Moves the slice views and the crosshair to that point. Returns false if there is none.
+  bool JumpSlicesToImagePoint(vtkMRMLFenestraRenderNode* render, double column, double row);
+  /// The same for a position in the view that shows the image, pixels from the lower left.
+  bool JumpSlicesToViewPoint(double x, double y);
+
   /// Shows another frame of a turntable, in the same view.
   void ShowFrame(vtkMRMLFenestraRenderNode* render, int frame);
   /// Number of frames in the render's image; 1: not a turntable; 0: no image.
@@ -184,6 +193,7 @@ private:
   /// Removes the nodes of a removed render's result; null: none.
   void RemoveResults(vtkMRMLFenestraRenderNode* render);
   void MoveToRenderFolder(vtkMRMLFenestraRenderNode* render, vtkMRMLNode* result);
+  void AddDepth(vtkMRMLFenestraRenderNode* render, const SlicerExport::Image& depth);
   void AddSurface(vtkMRMLFenestraRenderNode* render, vtkPolyData* surface);
   void AddFrames(vtkMRMLFenestraRenderNode* render, vtkImageData* frames);
   vtkMRMLVolumeNode* AddVolume(vtkMRMLFenestraRenderNode* render, const char* className,

@@ -1,27 +1,22 @@
 #include "vtkSlicerFenestraLogic.h"
 
+#include "FenestraImagePoint.h"
 #include "vtkMRMLFenestraRenderNode.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <vtkImageData.h>
 #include <vtkImageExtractComponents.h>
 #include <vtkImageFlip.h>
-#include <vtkMRMLApplicationLogic.h>
-#include <vtkMRMLLayoutNode.h>
 #include <vtkMRMLModelNode.h>
 #include <vtkMRMLScalarVolumeDisplayNode.h>
 #include <vtkMRMLScalarVolumeNode.h>
 #include <vtkMRMLScene.h>
-#include <vtkMRMLSelectionNode.h>
-#include <vtkMRMLSliceCompositeNode.h>
-#include <vtkMRMLSliceLogic.h>
-#include <vtkMRMLSliceNode.h>
 #include <vtkMRMLSubjectHierarchyNode.h>
 #include <vtkMRMLVectorVolumeNode.h>
-#include <vtkMRMLViewNode.h>
 #include <vtkMatrix4x4.h>
 #include <vtkNew.h>
 #include <vtkPNGReader.h>
@@ -33,15 +28,6 @@ namespace {
 using Node = vtkMRMLFenestraRenderNode;
 
 constexpr const char* PictureViewId = "vtkMRMLSliceNodeFenestra"; // class and singleton tag
-constexpr int ResultLayout = 5617; // larger than the numbers of Slicer's own layouts
-constexpr const char* ResultLayoutXml =
-    "<layout type=\"horizontal\" split=\"true\">"
-    "<item splitSize=\"500\"><view class=\"vtkMRMLSliceNode\" singletontag=\"Fenestra\">"
-    "<property name=\"orientation\" action=\"default\">Axial</property>"
-    "<property name=\"viewlabel\" action=\"default\">F</property>"
-    "<property name=\"viewcolor\" action=\"default\">#6FB1C8</property></view></item>"
-    "<item splitSize=\"500\"><view class=\"vtkMRMLViewNode\" singletontag=\"1\">"
-    "<property name=\"viewlabel\" action=\"default\">1</property></view></item></layout>";
 
 vtkSmartPointer<vtkImageData> ToVtk(const SlicerExport::Image& image) {
   vtkNew<vtkImageData> copy;
@@ -96,57 +82,6 @@ std::string MakeFrameFileName(const std::string& folder, int frame) {
   return folder + "/frame_" + number + ".png";
 }
 
-/// Shows a frame in the slice view as the camera saw it. The image's j axis points down and k away
-/// from the camera; the view's y axis points up and z to the viewer.
-void AlignSliceWithFrame(vtkMRMLVolumeNode* picture, int frame, vtkMRMLSliceNode* slice) {
-  double directions[3][3];
-  picture->GetIJKToRASDirections(directions);
-  vtkNew<vtkMatrix4x4> ijkToRas;
-  picture->GetIJKToRASMatrix(ijkToRas);
-  const int* size = picture->GetImageData()->GetDimensions();
-  const double middle[4] = {0.5 * (size[0] - 1), 0.5 * (size[1] - 1), double(frame), 1.0};
-  double center[4];
-  ijkToRas->MultiplyPoint(middle, center);
-  vtkNew<vtkMatrix4x4> toRas;
-  for (int row = 0; row < 3; ++row) {
-    toRas->SetElement(row, 0, directions[row][0]);
-    toRas->SetElement(row, 1, -directions[row][1]);
-    toRas->SetElement(row, 2, -directions[row][2]);
-    toRas->SetElement(row, 3, center[row]);
-  }
-  slice->GetSliceToRAS()->DeepCopy(toRas);
-  slice->UpdateMatrices();
-}
-
-/// Frame in the plane of the view; -1: none.
-int FindFrame(vtkMRMLVolumeNode* picture, vtkMRMLSliceNode* slice) {
-  vtkNew<vtkMatrix4x4> rasToIjk;
-  picture->GetRASToIJKMatrix(rasToIjk);
-  vtkMatrix4x4* plane = slice->GetSliceToRAS();
-  const double origin[4] = {plane->GetElement(0, 3), plane->GetElement(1, 3),
-                            plane->GetElement(2, 3), 1.0};
-  double ijk[4];
-  rasToIjk->MultiplyPoint(origin, ijk);
-  const long frame = std::lround(ijk[2]);
-  return frame >= 0 && frame < picture->GetImageData()->GetDimensions()[2] ? static_cast<int>(frame)
-                                                                           : -1;
-}
-
-bool HasSize(vtkMRMLSliceNode* slice, const int* size) {
-  return std::equal(size, size + 2, slice->GetDimensions());
-}
-
-vtkMRMLLayoutNode* FindLayoutNode(vtkMRMLScene* scene) {
-  return !scene ? nullptr
-                : vtkMRMLLayoutNode::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLLayoutNode"));
-}
-
-/// `picture`: node ID; null: none.
-bool IsShowing(vtkMRMLSliceLogic* sliceLogic, const char* picture) {
-  const char* shown = sliceLogic->GetSliceCompositeNode()->GetBackgroundVolumeID();
-  return picture && shown && std::strcmp(picture, shown) == 0;
-}
-
 /// Sets the display window to the range of the finite values.
 void SetWindowToFiniteRange(vtkMRMLVolumeNode* volume, const SlicerExport::Image& depth) {
   auto* display = vtkMRMLScalarVolumeDisplayNode::SafeDownCast(volume->GetDisplayNode());
@@ -163,11 +98,6 @@ void SetWindowToFiniteRange(vtkMRMLVolumeNode* volume, const SlicerExport::Image
   display->SetWindowLevelMinMax(least, greatest);
 }
 } // namespace
-
-void vtkSlicerFenestraLogic::OnMRMLSceneStartImport() {
-  if (vtkMRMLLayoutNode* layout = FindLayoutNode(this->GetMRMLScene()))
-    layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
-}
 
 std::vector<std::string> vtkSlicerFenestraLogic::GetFrameFiles(const std::string& folder) {
   std::vector<std::string> files;
@@ -188,7 +118,9 @@ FenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {
     return result;
   }
   result.radiance = ReadFloatImage(folder + "/radiance.nrrd");
-  result.depth = ReadFloatImage(folder + "/radiance-Z.nrrd");
+  const std::string middle = folder + "/radiance-depth50.nrrd"; // written if denoised
+  result.depth =
+      ReadFloatImage(std::filesystem::exists(middle) ? middle : folder + "/radiance-Z.nrrd");
   result.picture = ReadPictures({folder + "/picture.png"});
   const std::string surface = folder + "/surface.vtp";
   if (std::filesystem::exists(surface)) {
@@ -279,6 +211,15 @@ void vtkSlicerFenestraLogic::AddSurface(Node* render, vtkPolyData* surface) {
   this->MoveToRenderFolder(render, model);
 }
 
+void vtkSlicerFenestraLogic::AddDepth(Node* render, const SlicerExport::Image& depth) {
+  vtkMRMLVolumeNode* volume = this->AddVolume(render, "vtkMRMLScalarVolumeNode", Node::DepthRole,
+                                              ToVtk(depth), depth.ijkToRas);
+  const auto camera = depth.fields.find(SlicerExport::cameraField);
+  if (camera != depth.fields.end())
+    volume->SetAttribute(Node::CameraAttribute, camera->second.c_str());
+  SetWindowToFiniteRange(volume, depth);
+}
+
 /// Moves the image's plane toward the camera until it is outside the volume. A slice view of that
 /// plane then intersects no segments or models.
 SlicerExport::Matrix
@@ -325,119 +266,9 @@ void vtkSlicerFenestraLogic::AddResult(Node* render, const FenestraResult& resul
     this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::RadianceRole, ToVtk(result.radiance),
                     result.radiance.ijkToRas);
   if (step == 2)
-    SetWindowToFiniteRange(this->AddVolume(render, "vtkMRMLScalarVolumeNode", Node::DepthRole,
-                                           ToVtk(result.depth), result.depth.ijkToRas),
-                           result.depth);
+    this->AddDepth(render, result.depth);
   if (step == 3 && result.surface && result.surface->GetNumberOfPoints() > 0)
     this->AddSurface(render, result.surface);
-}
-
-void vtkSlicerFenestraLogic::ShowNewestVolume() {
-  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
-  vtkMRMLSelectionNode* selection = application ? application->GetSelectionNode() : nullptr;
-  if (!this->GetMRMLScene())
-    return;
-  std::vector<vtkMRMLNode*> volumes;
-  this->GetMRMLScene()->GetNodesByClass("vtkMRMLScalarVolumeNode", volumes);
-  if (!selection || volumes.empty())
-    return;
-  selection->SetActiveVolumeID(volumes.back()->GetID());
-  application->PropagateVolumeSelection();
-}
-
-vtkMRMLSliceLogic* vtkSlicerFenestraLogic::GetPictureSliceLogic() {
-  auto* slice = vtkMRMLSliceNode::SafeDownCast(
-      this->GetMRMLScene()->GetSingletonNode("Fenestra", "vtkMRMLSliceNode"));
-  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
-  return slice && application ? application->GetSliceLogic(slice) : nullptr;
-}
-
-void vtkSlicerFenestraLogic::ShowLayoutBefore() {
-  if (vtkMRMLLayoutNode* layout = FindLayoutNode(this->GetMRMLScene()))
-    layout->SetViewArrangement(this->PreviousLayout);
-}
-
-void vtkSlicerFenestraLogic::ShowResult(Node* render) {
-  if (!render || !this->GetMRMLScene())
-    return;
-  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
-  vtkMRMLLayoutNode* layout = FindLayoutNode(this->GetMRMLScene());
-  if (!layout || GetNumberOfFrames(render) == 0)
-    return;
-  layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
-  if (layout->GetViewArrangement() != ResultLayout)
-    this->PreviousLayout = layout->GetViewArrangement();
-  layout->SetViewArrangement(ResultLayout);
-
-  vtkMRMLSliceLogic* sliceLogic = this->GetPictureSliceLogic();
-  if (!sliceLogic)
-    return;
-  vtkMRMLSliceNode* slice = sliceLogic->GetSliceNode();
-  vtkMRMLSliceCompositeNode* composite = sliceLogic->GetSliceCompositeNode();
-  composite->SetBackgroundVolumeID(picture->GetID());
-  composite->SetForegroundVolumeID(nullptr);
-  composite->SetLabelVolumeID(nullptr);
-  this->ShownFrame = this->FittedSize[0] = 0;
-  AlignSliceWithFrame(picture, 0, slice);
-  this->AlignView();
-  vtkUnObserveMRMLNodeMacro(slice);
-  vtkObserveMRMLNodeMacro(slice);
-}
-
-void vtkSlicerFenestraLogic::AlignView() {
-  Node* render = this->GetShownRender();
-  if (GetNumberOfFrames(render) == 0)
-    return;
-  vtkMRMLSliceLogic* sliceLogic = this->GetPictureSliceLogic();
-  vtkMRMLSliceNode* slice = sliceLogic->GetSliceNode();
-  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
-  const int frame = FindFrame(picture, slice);
-  if (!HasSize(slice, this->FittedSize)) {
-    std::copy_n(slice->GetDimensions(), 2, this->FittedSize);
-    sliceLogic->FitSliceToBackground(this->FittedSize[0], this->FittedSize[1]);
-  }
-  AlignSliceWithFrame(picture, frame < 0 ? this->ShownFrame : frame, slice);
-}
-
-void vtkSlicerFenestraLogic::OnMRMLNodeModified(vtkMRMLNode* node) {
-  auto* slice = vtkMRMLSliceNode::SafeDownCast(node);
-  Node* render = slice ? this->GetShownRender() : nullptr;
-  if (GetNumberOfFrames(render) == 0)
-    return;
-  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
-  if (!HasSize(slice, this->FittedSize) || FindFrame(picture, slice) < 0)
-    this->InvokeEvent(ViewChangedEvent);
-}
-
-Node* vtkSlicerFenestraLogic::GetShownRender() {
-  if (!this->GetMRMLScene())
-    return nullptr;
-  vtkMRMLLayoutNode* layout = FindLayoutNode(this->GetMRMLScene());
-  vtkMRMLSliceLogic* sliceLogic = this->GetPictureSliceLogic();
-  if (!sliceLogic || !layout || layout->GetViewArrangement() != ResultLayout)
-    return nullptr;
-  std::vector<vtkMRMLNode*> renders;
-  this->GetMRMLScene()->GetNodesByClass("vtkMRMLFenestraRenderNode", renders);
-  for (vtkMRMLNode* render : renders)
-    if (IsShowing(sliceLogic, render->GetNodeReferenceID(Node::PictureRole)))
-      return Node::SafeDownCast(render);
-  return nullptr;
-}
-
-void vtkSlicerFenestraLogic::ShowFrame(Node* render, int frame) {
-  if (!render || !this->GetMRMLScene())
-    return;
-  auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
-  if (!picture || frame < 0 || frame >= GetNumberOfFrames(render))
-    return;
-  vtkMRMLSliceLogic* sliceLogic = this->GetPictureSliceLogic();
-  if (!sliceLogic || !IsShowing(sliceLogic, picture->GetID())) {
-    this->ShowResult(render);
-    sliceLogic = this->GetPictureSliceLogic(); // which the layout may have created just now
-  }
-  this->ShownFrame = frame;
-  if (sliceLogic)
-    AlignSliceWithFrame(picture, frame, sliceLogic->GetSliceNode());
 }
 
 int vtkSlicerFenestraLogic::GetNumberOfFrames(Node* render) {

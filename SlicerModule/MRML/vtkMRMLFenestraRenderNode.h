@@ -107,6 +107,8 @@ public:
 
   /// Attribute of a result: measures selected from the renderer's statistics, a JSON object.
   static constexpr const char* MeasuresAttribute = "Fenestra.Measures";
+  /// Attribute of a result's depth: its camera, as options of the renderer.
+  static constexpr const char* CameraAttribute = "Fenestra.Camera";
 
 #ifndef __VTK_WRAP__ // Python has no std::map
   /// Replaces all flags. Leaves out unknown names and wrong values.

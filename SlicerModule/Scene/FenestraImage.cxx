@@ -153,14 +153,19 @@ Image readNrrd(const std::filesystem::path& file) {
   std::string line;
   if (!std::getline(in, line) || line.compare(0, 4, "NRRD") != 0)
     throw makeError(file, "not an NRRD file");
-  std::map<std::string, std::string> fields;
+  std::map<std::string, std::string> fields, further;
   while (std::getline(in, line) && !line.empty()) {
-    const std::size_t colon = line.find(": ");
-    if (line.front() != '#' && colon != std::string::npos)
+    const std::size_t colon = line.find(": "), key = line.find(":=");
+    if (line.front() == '#')
+      continue;
+    if (key < colon)
+      further[line.substr(0, key)] = line.substr(key + 2);
+    else if (colon != std::string::npos)
       fields[line.substr(0, colon)] = line.substr(colon + 2);
   }
   try {
     Image image = parseHeader(fields);
+    image.fields = std::move(further);
     const auto begin = in.tellg();
     const std::uintmax_t rest =
         std::filesystem::file_size(file) - static_cast<std::uintmax_t>(begin);

@@ -150,6 +150,35 @@ class FenestraScriptTest(unittest.TestCase):
         self.assertTrue(wait_for(lambda: not manager.IsImageShown()))
         self.assertFalse(opening.HasImage())
 
+    def test_click_in_the_image_takes_the_slices_there(self):
+        self.logic.ShowResult(self.render)
+        process_events()
+        size = self.render.GetNodeReference("picture").GetImageData().GetDimensions()
+        column, row, expected = size[0] // 2, size[1] // 2, [0.0, 0.0, 0.0]
+        self.assertTrue(self.logic.GetImagePoint(self.render, column, row, expected))
+        for outside in ((-1, 0), (size[0], 0), (float("nan"), 0)):
+            self.assertFalse(self.logic.GetImagePoint(self.render, *outside, [0.0, 0.0, 0.0]))
+        self.assertFalse(self.logic.GetImagePoint(None, column, row, [0.0, 0.0, 0.0]))
+        view = slicer.mrmlScene.GetSingletonNode("Fenestra", "vtkMRMLSliceNode")
+        to_view, to_ras = vtk.vtkMatrix4x4(), vtk.vtkMatrix4x4()
+        vtk.vtkMatrix4x4.Invert(view.GetXYToRAS(), to_view)
+        self.render.GetNodeReference("picture").GetIJKToRASMatrix(to_ras)
+        x, y, _, _ = to_view.MultiplyPoint(to_ras.MultiplyPoint((column, row, 0, 1)))
+        plane = [view.GetSliceToRAS().GetElement(axis, 3) for axis in range(3)]
+        interactor = slicer.app.layoutManager().sliceWidget("Fenestra").sliceView().interactor()
+        for event, shift in (("LeftButtonPressEvent", 0), ("MouseMoveEvent", 1)):
+            for name in ("Red", "Green", "Yellow"):
+                slicer.mrmlScene.GetNodeByID("vtkMRMLSliceNode" + name).SetSliceOffset(-1000.0)
+            interactor.SetEventInformation(round(x), round(y), 0, shift)
+            interactor.InvokeEvent(event)
+            for name, axis in (("Red", 2), ("Green", 1), ("Yellow", 0)):
+                offset = slicer.mrmlScene.GetNodeByID("vtkMRMLSliceNode" + name).GetSliceOffset()
+                self.assertAlmostEqual(offset, expected[axis], delta=3.0)  # a pixel of the small image
+            crosshair = slicer.mrmlScene.GetFirstNodeByClass("vtkMRMLCrosshairNode").GetCrosshairRAS()
+            self.assertLess(vtk.vtkMath.Distance2BetweenPoints(crosshair, expected) ** 0.5, 5.0)
+        self.assertEqual([view.GetSliceToRAS().GetElement(axis, 3) for axis in range(3)], plane)
+        interactor.InvokeEvent("LeftButtonReleaseEvent")
+
     def test_shown_image_is_complete(self):
         """One call shows the image's plane, completely and beside a 3D view of the same width."""
         slicer.app.layoutManager().setLayout(slicer.vtkMRMLLayoutNode.SlicerLayoutFourUpView)
