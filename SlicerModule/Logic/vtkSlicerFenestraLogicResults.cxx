@@ -132,23 +132,24 @@ FenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {
   return result;
 }
 
-/// Moves a result into the render's folder of the subject hierarchy, beside the render's volume.
+/// Moves a result into the render's folder of the subject hierarchy, below the render's volume.
 void vtkSlicerFenestraLogic::MoveToRenderFolder(Node* render, vtkMRMLNode* result) {
   auto* hierarchy = vtkMRMLSubjectHierarchyNode::GetSubjectHierarchyNode(this->GetMRMLScene());
   if (!hierarchy)
     return;
   const vtkIdType none = vtkMRMLSubjectHierarchyNode::GetInvalidItemID();
-  vtkIdType parent = hierarchy->GetSceneItemID();
-  if (vtkMRMLNode* volume = render->GetNodeReference(Node::VolumeRole))
-    if (const vtkIdType item = hierarchy->GetItemByDataNode(volume); item != none)
-      parent = hierarchy->GetItemParent(item);
+  vtkMRMLNode* source = render->GetNodeReference(Node::VolumeRole);
+  const vtkIdType volume = source ? hierarchy->GetItemByDataNode(source) : none;
+  const vtkIdType parent =
+      volume != none ? hierarchy->GetItemParent(volume) : hierarchy->GetSceneItemID();
   vtkIdType folder = hierarchy->GetItemChildWithName(parent, render->GetName());
-  if (folder == none)
+  if (folder == none) {
     folder = hierarchy->CreateFolderItem(parent, render->GetName());
-  if (const vtkIdType item = hierarchy->GetItemByDataNode(result); item != none)
-    hierarchy->SetItemParent(item, folder);
-  else
-    hierarchy->CreateItem(folder, result);
+    const int below = volume != none ? hierarchy->GetItemPositionUnderParent(volume) + 1 : -1;
+    if (below > 0)
+      hierarchy->MoveItem(folder, hierarchy->GetItemByPositionUnderParent(parent, below));
+  }
+  hierarchy->CreateItem(folder, result); // or moves it
 }
 
 /// Removes the results of a removed render, and their folder.

@@ -15,6 +15,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkMRMLModelNode.h>
 #include <vtkMRMLStorageNode.h>
+#include <vtkMRMLSubjectHierarchyNode.h>
 #include <vtkMRMLVectorVolumeNode.h>
 #include <vtkPolyData.h>
 
@@ -195,10 +196,37 @@ int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node
   return EXIT_SUCCESS;
 }
 
+/// A finished render has its results in a folder directly below its volume. They are removed with
+/// it.
+int checkFolder(vtkMRMLScene* scene, Node* render) {
+  auto* hierarchy = vtkMRMLSubjectHierarchyNode::GetSubjectHierarchyNode(scene);
+  const vtkIdType root = hierarchy->GetSceneItemID();
+  const vtkIdType volume = hierarchy->GetItemByDataNode(render->GetNodeReference(Node::VolumeRole));
+  const int below = hierarchy->GetItemPositionUnderParent(volume) + 1;
+  const vtkIdType folder = hierarchy->GetItemByPositionUnderParent(root, below);
+  CHECK_STD_STRING(hierarchy->GetItemName(folder), std::string(render->GetName()));
+  std::vector<std::string> results;
+  for (const char* role :
+       {Node::PictureRole, Node::RadianceRole, Node::DepthRole, Node::SurfaceRole}) {
+    vtkMRMLNode* result = render->GetNodeReference(role);
+    CHECK_NOT_NULL(result);
+    CHECK_BOOL(hierarchy->GetItemParent(hierarchy->GetItemByDataNode(result)) == folder, true);
+    results.emplace_back(result->GetID());
+  }
+  CHECK_INT(hierarchy->GetNumberOfItemChildren(folder), static_cast<int>(results.size()));
+  scene->RemoveNode(render);
+  for (const std::string& result : results)
+    CHECK_NULL(scene->GetNodeByID(result));
+  return EXIT_SUCCESS;
+}
+
 /// Render, events and removal, as a script uses them.
 int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settings) {
   CHECK_NULL(logic->AddRender(nullptr));
-  settings->SetFlags({{"samples", "8"}, {"size", "48x40"}, {"transfer", "ct-soft"}});
+  settings->SetFlags({{"samples", "8"},
+                      {"size", "48x40"},
+                      {"transfer", "ct-soft"},
+                      {"focus", logic->GetSegmentIDs(settings).front()}});
   Node* render = logic->Render(settings);
   CHECK_NOT_NULL(render);
   CHECK_BOOL(logic->IsRendering(render), true);
@@ -218,14 +246,7 @@ int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   CHECK_STD_STRING(render->GetProblem(), "");
   Node* finished = logic->Render(settings, true);
   CHECK_NOT_NULL(finished);
-  CHECK_NOT_NULL(finished->GetNodeReference(Node::PictureRole));
-  // Results are removed with their render.
-  const std::string picture = finished->GetNodeReferenceID(Node::PictureRole);
-  const std::string depth = finished->GetNodeReferenceID(Node::DepthRole);
-  scene->RemoveNode(finished);
-  CHECK_NULL(scene->GetNodeByID(picture));
-  CHECK_NULL(scene->GetNodeByID(depth));
-  return EXIT_SUCCESS;
+  return checkFolder(scene, finished);
 }
 
 /// The time of the sample is reported at once; a second request meanwhile is ignored.
@@ -265,6 +286,10 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   settings->SetNodeReferenceID(Node::VolumeRole, FenestraTesting::addVolume(scene)->GetID());
   vtkMRMLSegmentationNode* segmentation = FenestraTesting::addSegmentation(scene);
   settings->SetNodeReferenceID(Node::SegmentationRole, segmentation->GetID());
+  auto* hierarchy = vtkMRMLSubjectHierarchyNode::GetSubjectHierarchyNode(scene);
+  for (vtkMRMLNode* node : {settings->GetNodeReference(Node::VolumeRole),
+                            static_cast<vtkMRMLNode*>(segmentation)}) // as Slicer does
+    hierarchy->CreateItem(hierarchy->GetSceneItemID(), node);
   settings->SetFlags({{"samples", "8"},
                       {"size", "48x40"},
                       {"transfer", "ct-soft"},
