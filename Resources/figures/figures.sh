@@ -57,6 +57,12 @@ join_images() {
     "${labels[@]}" -quality 86 "$figures/$file"
 }
 
+# write_icon FILE NAME: makes an icon of Slicer's panel from an image. 64 colors keep it below 8 kB. The module's
+# .qrc must list a new icon.
+write_icon() {
+  convert "$1" -resize 96x96 -strip +dither -colors 64 "PNG8:$top/SlicerModule/Resources/Icons/$2.png"
+}
+
 # write_section NAME: replaces the lines between <!-- NAME --> and <!-- end of NAME --> of README.md by
 # $out/NAME.md.
 write_section() {

@@ -36,9 +36,7 @@ abdomen=abdomen_ct_totalseg
 show_real spine $abdomen/ct.nii.gz $abdomen/seg_multiorgan.nii.gz "$(find_labels $abdomen/seg_labels.json 'vertebra|sacrum')"
 show_real brain-surface head_mr_seg3d/t1.nii.gz head_mr_seg3d/seg_brain_skull.nii.gz 1
 
-# 64 colors keep each icon below 8 kB. The module's .qrc must list a new icon.
 for image in "$pictures"/preset-*.jpg; do
-  convert "$image" -resize 96x96 -strip -colors 64 \
-    "PNG8:$top/SlicerModule/Resources/Icons/$(basename "$image" .jpg).png"
+  write_icon "$image" "$(basename "$image" .jpg)"
 done
 say "Done: $pictures"
