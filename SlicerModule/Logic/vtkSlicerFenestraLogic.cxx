@@ -76,9 +76,28 @@ Node* vtkSlicerFenestraLogic::GetSettings() {
   node->SetName("Fenestra settings");
   node->SetSingletonTag("Settings");
   node->SetHideFromEditors(true);
-  node->SetFlags(
-      {{"samples", "256"}, {"noise", "0.05"}, {"size", "512x512"}, {"background", "dark"}});
+  ResetSettings(node);
   return Node::SafeDownCast(scene->AddNode(node));
+}
+
+void vtkSlicerFenestraLogic::ResetSettings(Node* settings) {
+  if (!settings)
+    return;
+  vtkNew<Node> defaults;
+  defaults->SetFlags({{"samples", "256"},
+                      {"noise", "0.05"},
+                      {"size", "512x512"},
+                      {"background", "dark"},
+                      {"frames", "36"},
+                      {"degrees", "360"},
+                      {"focus", settings->GetFlag("focus")}});
+  const int wasModifying = settings->StartModify();
+  for (const char* role : {Node::ViewRole, Node::PlaneRole})
+    settings->SetNodeReferenceID(role, nullptr);
+  settings->RemoveAttribute(Node::LightsAttribute);
+  settings->SetAttribute(Node::ViewSizeAttribute, "1 512x512");
+  settings->CopyFlags(defaults);
+  settings->EndModify(wasModifying);
 }
 
 Node* vtkSlicerFenestraLogic::AddRender(Node* settings, bool turntable) {

@@ -49,6 +49,8 @@ public:
   /// Settings that the panel edits; created if missing. A singleton of the scene; renders have
   /// copies.
   vtkMRMLFenestraRenderNode* GetSettings();
+  /// Restores the defaults of new settings; keeps volume, segmentation and focus.
+  static void ResetSettings(vtkMRMLFenestraRenderNode* settings);
   /// Adds a node for a render with the current settings; a followed camera becomes a fixed view.
   /// Only a turntable's node keeps the turntable flags.
   vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings, bool turntable = false);

@@ -109,6 +109,12 @@ public:
   static constexpr const char* MeasuresAttribute = "Fenestra.Measures";
   /// Attribute of a result's depth: its camera, as options of the renderer.
   static constexpr const char* CameraAttribute = "Fenestra.Camera";
+  /// Attribute of settings: light rig with strengths in percent, "rig key fill rim environment".
+  /// Used only if it produces the flag `lights`.
+  static constexpr const char* LightsAttribute = "Fenestra.Lights";
+  /// Attribute of settings whose size follows the 3D view: factor and size, "2 1024x768". Used only
+  /// if the size is the flag `size`.
+  static constexpr const char* ViewSizeAttribute = "Fenestra.ViewSize";
 
 #ifndef __VTK_WRAP__ // Python has no std::map
   /// Replaces all flags. Leaves out unknown names and wrong values.

@@ -202,6 +202,28 @@ int testTurntable(vtkSlicerFenestraLogic* logic, Node* settings) {
   return EXIT_SUCCESS;
 }
 
+/// Settings are as new, except what to show; values of an untrusted scene are dropped.
+int testReset(vtkSlicerFenestraLogic* logic, Node* settings) {
+  const char* attributes[] = {"transfer", "/nowhere/mine.json", "later", "1", nullptr};
+  settings->ReadXMLAttributes(attributes);
+  settings->SetFlags({{"focus", "a"}, {"view", "left"}, {"size", "30x20"}});
+  settings->SetAttribute(Node::LightsAttribute, "cinema 50 100 100 100");
+  vtkMRMLNode* const volume = settings->GetNodeReference(Node::VolumeRole);
+  CHECK_NOT_NULL(volume);
+  vtkSlicerFenestraLogic::ResetSettings(settings);
+  CHECK_POINTER(settings->GetNodeReference(Node::VolumeRole), volume);
+  CHECK_NULL(settings->GetNodeReference(Node::ViewRole));
+  CHECK_NULL(settings->GetAttribute(Node::LightsAttribute));
+  vtkNew<vtkMRMLScene> other;
+  logic->SetMRMLScene(other);
+  std::map<std::string, std::string> expected = logic->GetSettings()->GetFlags();
+  expected["focus"] = "a";
+  CHECK_BOOL(settings->GetFlags() == expected, true);
+  CHECK_BOOL(settings->GetWithheld().empty(), true);
+  vtkSlicerFenestraLogic::ResetSettings(nullptr);
+  return EXIT_SUCCESS;
+}
+
 } // namespace
 
 int vtkSlicerFenestraLogicTest1(int, char*[]) {
@@ -228,5 +250,6 @@ int vtkSlicerFenestraLogicTest1(int, char*[]) {
   CHECK_BOOL(hasSurface({{"focus", "a"}, {"clip", "none"}}), false);
   CHECK_BOOL(hasSurface({}), false);
   CHECK_BOOL(vtkSlicerFenestraLogic::HasSurface(nullptr), false);
+  CHECK_EXIT_SUCCESS(testReset(logic, settings));
   return EXIT_SUCCESS;
 }
