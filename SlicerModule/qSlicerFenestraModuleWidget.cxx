@@ -8,12 +8,15 @@
 #include "vtkMRMLFenestraRenderNode.h"
 #include "vtkSlicerFenestraLogic.h"
 
+#include <qMRMLThreeDView.h>
 #include <qMRMLThreeDWidget.h>
-#include <qSlicerApplication.h>
+#include <qSlicerCoreApplication.h>
 #include <qSlicerCoreIOManager.h>
-#include <qSlicerLayoutManager.h>
 
+#include <vtkCommand.h>
 #include <vtkMRMLScene.h>
+#include <vtkRenderWindow.h>
+#include <vtkWeakPointer.h>
 
 #include <QJsonDocument>
 #include <QPointer>
@@ -26,19 +29,6 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 using qSlicerFenestraMeasures::formatDuration;
-
-/// Size with the aspect ratio of the first 3D view and about `side` x `side` pixels; empty: no
-/// view.
-std::string findViewSize(double side) {
-  const qSlicerApplication* application = qSlicerApplication::application();
-  qSlicerLayoutManager* layout = application ? application->layoutManager() : nullptr;
-  const QWidget* view = layout ? layout->threeDWidget(0) : nullptr;
-  if (!view || view->width() < 64 || view->height() < 64) // hidden or collapsed
-    return {};
-  const double scale = side / std::sqrt(double(view->width()) * view->height());
-  const auto scaled = [scale](int length) { return std::to_string(std::lround(scale * length)); };
-  return scaled(view->width()) + "x" + scaled(view->height());
-}
 
 } // namespace
 
@@ -56,6 +46,7 @@ public:
   QString toUserText(Node* render, qFenestraOutcome::Kind kind) const;
 
   QPointer<qSlicerFenestraSession> session; ///< owned by the module, which may end earlier
+  vtkWeakPointer<vtkRenderWindow> window;   ///< of the 3D view whose size is followed
   bool sceneIsNew = false;                  ///< scene closed or loaded, but not shown yet
   QString samplesAndNoise;                  ///< samples and noise of the current render, as text
   QElapsedTimer progressAge;                ///< time since progress was last shown
@@ -123,6 +114,7 @@ void qSlicerFenestraModuleWidget::connectPanel() {
   connect(d->Settings, &qSlicerFenestraSettings::turntableRequested, this,
           &Widget::renderTurntable);
   connect(d->Settings, &qSlicerFenestraSettings::changed, this, [this, d] {
+    followView();
     d->session->queryMaterials(vtkSlicerFenestraLogic::GetSegments(d->Settings->node()));
     updateButtons();
     preview();
@@ -202,13 +194,24 @@ void qSlicerFenestraModuleWidget::useScene() {
   if (!this->isEntered() || !this->mrmlScene() || this->mrmlScene()->IsBatchProcessing())
     return;
   d->sceneIsNew = false;
-  const bool isNew = !this->mrmlScene()->GetSingletonNode("Settings", "vtkMRMLFenestraRenderNode");
-  Node* settings = fenestraLogic()->GetSettings();
-  if (const std::string size = isNew ? findViewSize(512.0) : ""; !size.empty())
-    settings->SetFlag("size", size);
-  d->Settings->use(settings);
+  d->Settings->use(fenestraLogic()->GetSettings());
   if (!d->chosenRender())
     d->RendersBox->setCurrentNode(fenestraLogic()->GetShownRender());
+}
+
+/// Takes the size of the 3D view now, and whenever it changes.
+void qSlicerFenestraModuleWidget::followView() {
+  Q_D(qSlicerFenestraModuleWidget);
+  Node* settings = d->Settings->node();
+  const qMRMLThreeDWidget* view =
+      settings ? qSlicerFenestraWidgets::find3DWidget(settings->GetNodeReference(Node::ViewRole))
+               : nullptr;
+  vtkRenderWindow* window = view ? view->threeDView()->renderWindow() : nullptr;
+  if (window != d->window)
+    this->qvtkReconnect(d->window, window, vtkCommand::WindowResizeEvent, d->Settings,
+                        SLOT(followViewSize()));
+  d->window = window;
+  d->Settings->followViewSize();
 }
 
 void qSlicerFenestraModuleWidget::preview() {
@@ -236,6 +239,7 @@ void qSlicerFenestraModuleWidget::start(qSlicerFenestraSession::Kind kind) {
   if (!d->Settings->node())
     return;
   d->clearStatus();
+  d->Settings->followViewSize();
   d->session->render(d->Settings->node(), kind);
   updateButtons();
 }
@@ -278,10 +282,10 @@ void qSlicerFenestraModuleWidget::repeat() {
 
 void qSlicerFenestraModuleWidgetPrivate::showPreviewImage(const QImage& image,
                                                           const qFenestraPreviewImage& info) {
-  PreviewLabel->setPixmap(QPixmap::fromImage(image));
+  PreviewLabel->showImage(image);
   const double value = info.frame->noise;
   const QString noise = std::isnan(value) ? QString() : tr(", noise %1").arg(value, 0, 'g', 2);
-  PreviewStateLabel->setText(tr("Preview: %1 samples per pixel%2, %3")
+  PreviewStateLabel->setText(tr("%1 samples per pixel%2, %3")
                                  .arg(info.frame->samples)
                                  .arg(noise, formatDuration(info.seconds)));
 }
@@ -354,8 +358,10 @@ void qSlicerFenestraModuleWidget::updateButtons() {
   d->Settings->setHasVolume(hasVolume);
   d->Opening->use(d->Settings->node());
   if (!hasVolume) {
-    d->PreviewLabel->setText(tr("Load a volume, or the sample knee"));
+    d->PreviewLabel->showText(tr("Load a volume, or the sample knee"));
     d->PreviewStateLabel->clear();
+  } else if (!d->PreviewLabel->text().isEmpty()) {
+    d->PreviewLabel->showText({});
   }
   setEnabled(d->StopButton, d->session->isRendering(), tr("No render is running"));
   Node* render = d->chosenRender();

@@ -57,6 +57,7 @@ private:
   void connectPanel();
   void connectSession();
   void useScene();
+  void followView();
   void preview();
   void updateButtons();
   void showSelected();

@@ -3,7 +3,7 @@
 set(widget_sources)
 set(widget_moc_sources)
 set(widget_ui_sources)
-foreach(name Clipping Look Margins Materials Player Quality Settings)
+foreach(name Clipping Look Margins Materials Player Quality Settings Turntable)
   list(APPEND widget_sources Widgets/qSlicerFenestra${name}.cxx Widgets/qSlicerFenestra${name}.h)
   list(APPEND widget_moc_sources Widgets/qSlicerFenestra${name}.h)
   list(APPEND widget_ui_sources Resources/UI/qSlicerFenestra${name}.ui)

@@ -36,10 +36,13 @@ qSlicerFenestraLook::qSlicerFenestraLook(QWidget* parent)
     : QWidget(parent), d_ptr(new qSlicerFenestraLookPrivate) {
   Q_D(qSlicerFenestraLook);
   d->setupUi(this);
-  setItemData(d->TransferBox, {"", "ct-anatomy", "ct-contrast", "ct-lung", "ct-bone", "ct-skin",
-                               "ct-soft", "ct-skeleton", "mr-anatomy", "mr-knee", "us-fetal"});
+  setItemData(d->TransferBox,
+              {"", "ct-anatomy", "ct-contrast", "ct-lung", "ct-bone", "ct-skin", "ct-soft",
+               "ct-skeleton", "mr-anatomy", "mr-knee", "us-fetal", "pet"});
+  setItemIcons(d->TransferBox, "transfer");
   setItemData(d->RigBox,
               {"", "theatre-wet", "theatre", "cinema", "studio", "headlight", "soft", "amber"});
+  setItemIcons(d->RigBox, "lights");
   setItemData(d->BackgroundBox, {"dark", "gradient", "gray", "100,100,100", "transparent"});
   setItemData(d->ToneBox, {defaultTone, "photographic"});
   d->defaultTransfer = d->TransferBox->itemText(0);

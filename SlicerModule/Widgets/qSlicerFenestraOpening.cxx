@@ -14,8 +14,8 @@
 
 qSlicerFenestraOpening::qSlicerFenestraOpening(QWidget* parent)
     : QWidget(parent),
-      m_button(new QPushButton(tr("Open the view"), this)),
-      m_image(new QPushButton(tr("Photorealistic"), this)),
+      m_button(new QPushButton(tr("&Open the view"), this)),
+      m_image(new QPushButton(tr("&Photorealistic"), this)),
       m_state(new QLabel(this)) {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(0, 0, 0, 0);

@@ -3,18 +3,35 @@
 #include <QPainter>
 
 qSlicerFenestraPreviewLabel::qSlicerFenestraPreviewLabel(QWidget* parent) : QLabel(parent) {
-  setWordWrap(true); // the height depends on the width
-  setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Expanding);
 }
 
-QSize qSlicerFenestraPreviewLabel::minimumSizeHint() const {
-  return {1, 1};
+void qSlicerFenestraPreviewLabel::showImage(const QImage& image) {
+  setPixmap(QPixmap::fromImage(image));
+  limitHeight();
 }
 
-int qSlicerFenestraPreviewLabel::heightForWidth(int width) const {
+void qSlicerFenestraPreviewLabel::showText(const QString& text) {
+  setText(text);
+  limitHeight();
+}
+
+QSize qSlicerFenestraPreviewLabel::sizeHint() const {
+  constexpr int least = 180; // pixels
+  const bool hasImage = !pixmap(Qt::ReturnByValue).isNull();
+  return {1, hasImage ? qMin(least, maximumHeight()) : QLabel::sizeHint().height()};
+}
+
+/// Leaves no empty space above and below the image.
+void qSlicerFenestraPreviewLabel::limitHeight() {
   const QSize image = pixmap(Qt::ReturnByValue).size();
-  return image.isEmpty() ? QLabel::heightForWidth(width)
-                         : qMin(width, width * image.height() / image.width());
+  setMaximumHeight(image.isEmpty() ? QLabel::sizeHint().height()
+                                   : qMin(width(), width() * image.height() / image.width()));
+}
+
+void qSlicerFenestraPreviewLabel::resizeEvent(QResizeEvent* event) {
+  QLabel::resizeEvent(event);
+  limitHeight();
 }
 
 void qSlicerFenestraPreviewLabel::paintEvent(QPaintEvent* event) {

@@ -15,7 +15,6 @@
 #include <vtkSegmentation.h>
 #include <vtkWeakPointer.h>
 
-#include <QAbstractItemView>
 #include <QScopedValueRollback>
 #include <QStandardItemModel>
 
@@ -27,7 +26,6 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 using Flags = std::map<std::string, std::string>;
-constexpr const char* rigAttribute = "Fenestra.Lights"; ///< value: "rig key fill rim environment"
 
 const char* getId(vtkMRMLNode* node) {
   return node ? node->GetID() : nullptr;
@@ -55,6 +53,7 @@ public:
   void showWithheld();
   void showView(const Flags& flags);
   void takeView(Flags& flags);
+  void store(Flags flags, const QString& viewSize);
 
   vtkSlicerFenestraLogic* logic = nullptr;
   vtkWeakPointer<Node> node;
@@ -65,11 +64,12 @@ public:
 qSlicerFenestraSettings::qSlicerFenestraSettings(QWidget* parent)
     : qMRMLWidget(parent), d_ptr(new qSlicerFenestraSettingsPrivate) {
   using Settings = qSlicerFenestraSettings;
+  constexpr auto update = &Settings::updateMRMLFromWidget;
   Q_D(qSlicerFenestraSettings);
   d->setupUi(this);
   setItemData(d->PresetBox, {"", "auto", "knee-cartilage", "foot-bones", "spine", "heart", "lungs",
                              "liver", "brain-surface", "brain-tumor", "fetal-face"});
-  d->PresetBox->view()->setIconSize({48, 48}); // the list's only: the box stays one line high
+  setItemIcons(d->PresetBox, "preset");
   setItemData(d->ViewBox,
               {"", "auto", "anterior", "posterior", "left", "right", "superior", "inferior"});
   connect(d->VolumeBox, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this,
@@ -80,24 +80,23 @@ qSlicerFenestraSettings::qSlicerFenestraSettings(QWidget* parent)
           SLOT(updateMRMLFromWidget()));
   connect(d->FocusFilter, &QLineEdit::textChanged, this,
           [d](const QString& text) { filterItems(d->FocusList, text); });
-  connect(d->FocusList, &QListWidget::itemChanged, this, &Settings::updateMRMLFromWidget);
-  connect(d->Clipping, &qSlicerFenestraClipping::changed, this, &Settings::updateMRMLFromWidget);
+  connect(d->FocusList, &QListWidget::itemChanged, this, update);
+  connect(d->Clipping, &qSlicerFenestraClipping::changed, this, update);
   connect(d->PresetBox, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
           &Settings::takePreset);
-  connect(d->ViewBox, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
-          &Settings::updateMRMLFromWidget);
-  connect(d->Look, &qSlicerFenestraLook::changed, this, &Settings::updateMRMLFromWidget);
-  connect(d->MaterialsOfSegments, &qSlicerFenestraMaterials::changed, this,
-          &Settings::updateMRMLFromWidget);
+  connect(d->ViewBox, QOverload<int>::of(&QComboBox::currentIndexChanged), this, update);
+  connect(d->Look, &qSlicerFenestraLook::changed, this, update);
+  connect(d->MaterialsOfSegments, &qSlicerFenestraMaterials::changed, this, update);
   connect(d->AllowButton, &QPushButton::clicked, this, [d] {
     if (d->node)
       d->node->AllowFiles();
   });
-  connect(d->FollowBox, &QCheckBox::toggled, this, &Settings::updateMRMLFromWidget);
-  connect(d->QualityAndTurntable, &qSlicerFenestraQuality::changed, this,
-          &Settings::updateMRMLFromWidget);
-  connect(d->QualityAndTurntable, &qSlicerFenestraQuality::turntableRequested, this,
+  connect(d->FollowBox, &QCheckBox::toggled, this, update);
+  connect(d->QualityAndSize, &qSlicerFenestraQuality::changed, this, update);
+  connect(d->TurntableOfFocus, &qSlicerFenestraTurntable::changed, this, update);
+  connect(d->TurntableOfFocus, &qSlicerFenestraTurntable::turntableRequested, this,
           &Settings::turntableRequested);
+  connect(d->ResetButton, &QPushButton::clicked, this, &Settings::reset);
   connect(d->SampleButton, &QPushButton::clicked, this, &Settings::sampleRequested);
 }
 
@@ -116,7 +115,7 @@ void qSlicerFenestraSettings::setKnownMaterials(const qFenestraMaterials& known)
 void qSlicerFenestraSettings::setHasVolume(bool has) {
   Q_D(qSlicerFenestraSettings);
   d->SampleButton->setVisible(!has);
-  d->QualityAndTurntable->setHasVolume(has);
+  d->TurntableOfFocus->setHasVolume(has);
 }
 
 void qSlicerFenestraSettings::setSampleEnabled(bool enabled) {
@@ -138,6 +137,13 @@ void qSlicerFenestraSettings::use(Node* node) {
   this->qvtkConnect(d->node, vtkCommand::ModifiedEvent, this, SLOT(updateWidgetFromMRML()));
   d->chooseDefaults();
   updateWidgetFromMRML();
+  followViewSize();
+}
+
+void qSlicerFenestraSettings::reset() {
+  Q_D(qSlicerFenestraSettings);
+  vtkSlicerFenestraLogic::ResetSettings(d->node);
+  use(d->node); // what the widgets remember is reset, too
 }
 
 Node* qSlicerFenestraSettings::node() const {
@@ -151,7 +157,8 @@ void qSlicerFenestraSettings::copy(Node* render) {
   for (const char* role : {Node::VolumeRole, Node::SegmentationRole, Node::ViewRole})
     d->node->SetNodeReferenceID(role, render->GetNodeReferenceID(role));
   d->node->SetNodeReferenceID(Node::PlaneRole, nullptr); // the plane may have moved
-  d->node->SetAttribute(rigAttribute, render->GetAttribute(rigAttribute));
+  d->node->SetAttribute(Node::LightsAttribute, render->GetAttribute(Node::LightsAttribute));
+  d->node->RemoveAttribute(Node::ViewSizeAttribute); // the view may have changed
   d->node->CopyFlags(render);
   d->node->EndModify(wasModifying);
 }
@@ -251,8 +258,9 @@ void qSlicerFenestraSettings::updateWidgetFromMRML() {
     d->MaterialsOfSegments->show(flags);
     d->showWithheld();
     d->showView(flags);
-    d->Look->show(flags, d->node->GetAttribute(rigAttribute), d->hasPreset());
-    d->QualityAndTurntable->show(flags);
+    d->Look->show(flags, d->node->GetAttribute(Node::LightsAttribute), d->hasPreset());
+    d->QualityAndSize->show(flags, d->node->GetAttribute(Node::ViewSizeAttribute));
+    d->TurntableOfFocus->show(flags);
   }
   emit changed();
 }
@@ -285,7 +293,7 @@ void qSlicerFenestraSettingsPrivate::showSegments() {
     item->setCheckState(chosen ? Qt::Checked : Qt::Unchecked);
   }
   filterItems(FocusList, FocusFilter->text());
-  const int rows = qBound(4, FocusList->count(), 12); // more scroll
+  const int rows = qBound(3, FocusList->count(), 6); // more scroll
   const int height = qMax(FocusList->sizeHintForRow(0), FocusList->fontMetrics().height());
   FocusList->setFixedHeight(rows * height + 2 * FocusList->frameWidth());
   MaterialsOfSegments->list(segments);
@@ -359,10 +367,27 @@ void qSlicerFenestraSettings::updateMRMLFromWidget() {
                     byPreset || !flags["focus"].empty(), byPreset);
   d->takeView(flags);
   d->MaterialsOfSegments->take(flags);
-  d->node->SetAttribute(rigAttribute, d->Look->take(flags).toUtf8().constData());
-  d->QualityAndTurntable->take(flags);
-  d->node->SetFlags(flags);
+  d->node->SetAttribute(Node::LightsAttribute, d->Look->take(flags).toUtf8().constData());
+  d->TurntableOfFocus->take(flags);
+  const QString viewSize = d->QualityAndSize->take(flags);
+  d->store(flags, viewSize);
   d->node->EndModify(wasModifying);
+}
+
+void qSlicerFenestraSettings::followViewSize() {
+  Q_D(qSlicerFenestraSettings);
+  if (d->node && !d->showing)
+    d->store(d->node->GetFlags(), d->node->GetAttribute(Node::ViewSizeAttribute));
+}
+
+/// Writes the flags. `viewSize`: of an image "as the 3D view", which gets the view's present size.
+void qSlicerFenestraSettingsPrivate::store(Flags flags, const QString& viewSize) {
+  const QString size = QualityAndSize->followView(
+      flags, viewSize, find3DViewSize(node->GetNodeReference(Node::ViewRole)));
+  const int wasModifying = node->StartModify();
+  node->SetAttribute(Node::ViewSizeAttribute, size.isEmpty() ? nullptr : size.toUtf8().constData());
+  node->SetFlags(flags);
+  node->EndModify(wasModifying);
 }
 
 /// Clears the flags that the preset sets; the user may then set them again. Without a preset,

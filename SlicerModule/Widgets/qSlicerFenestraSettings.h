@@ -34,6 +34,10 @@ public:
   /// Copies the settings of a render, to repeat the render.
   void copy(vtkMRMLFenestraRenderNode* render);
 
+public slots:
+  /// Takes the present size of the 3D view, if the image's size follows it.
+  void followViewSize();
+
 signals:
   /// The settings, or a node that they reference, have changed.
   void changed();
@@ -46,6 +50,7 @@ protected:
 private slots:
   void updateWidgetFromMRML();
   void updateMRMLFromWidget();
+  void reset();
   void takePreset();
   void takeVolume(vtkMRMLNode* node);
   void takeSegmentation(vtkMRMLNode* node);

@@ -1,9 +1,19 @@
 #include "qSlicerFenestraWidgets.h"
 
+#include <qMRMLThreeDView.h>
+#include <qMRMLThreeDWidget.h>
+#include <qSlicerApplication.h>
+#include <qSlicerLayoutManager.h>
+
+#include <vtkMRMLViewNode.h>
+
 #include <QAbstractButton>
+#include <QAbstractItemView>
 #include <QComboBox>
+#include <QFile>
 #include <QFormLayout>
 #include <QHash>
+#include <QIcon>
 #include <QLabel>
 #include <QObject>
 #include <QSignalBlocker>
@@ -19,6 +29,15 @@ void qSlicerFenestraWidgets::setItemData(QComboBox* box, const QStringList& data
   Q_ASSERT(box->count() == data.size());
   for (int i = 0; i < box->count(); ++i)
     box->setItemData(i, data[i]);
+}
+
+void qSlicerFenestraWidgets::setItemIcons(QComboBox* box, const QString& kind) {
+  for (int i = 0; i < box->count(); ++i) {
+    const QString file = QString(":/Icons/%1-%2.png").arg(kind, box->itemData(i).toString());
+    if (QFile::exists(file))
+      box->setItemIcon(i, QIcon(file));
+  }
+  box->view()->setIconSize({48, 48});
 }
 
 void qSlicerFenestraWidgets::setChoiceOffered(QComboBox* box, int index, const Choice& choice,
@@ -88,4 +107,30 @@ QString qSlicerFenestraWidgets::findFlag(const std::map<std::string, std::string
                                          const char* name) {
   const auto found = flags.find(name);
   return found == flags.end() ? QString() : QString::fromStdString(found->second);
+}
+
+std::string qSlicerFenestraWidgets::toLimitFlag(double value) {
+  return value > 0.0 ? QString::number(value, 'g', 6).toStdString() : std::string();
+}
+
+qMRMLThreeDWidget* qSlicerFenestraWidgets::find3DWidget(vtkMRMLNode* view) {
+  const qSlicerApplication* application = qSlicerApplication::application();
+  qSlicerLayoutManager* layout = application ? application->layoutManager() : nullptr;
+  for (int i = 0; layout && i < layout->threeDViewCount(); ++i)
+    if (qMRMLThreeDWidget* widget = layout->threeDWidget(i);
+        widget && (!view || widget->mrmlViewNode() == view))
+      return widget;
+  return nullptr;
+}
+
+QSize qSlicerFenestraWidgets::find3DViewSize(vtkMRMLNode* view) {
+  constexpr int least = 64; // pixels; a smaller one is collapsed
+  const qMRMLThreeDWidget* widget = find3DWidget(view);
+  if (!widget)
+    widget = find3DWidget(nullptr);
+  if (!widget || !widget->isVisible())
+    return {};
+  const QWidget* area = widget->threeDView();
+  const QSize size = area->size() * area->devicePixelRatioF();
+  return qMin(size.width(), size.height()) < least ? QSize() : size;
 }

@@ -1,6 +1,7 @@
 #ifndef __qSlicerFenestraWidgets_h
 #define __qSlicerFenestraWidgets_h
 
+#include <QSize>
 #include <QString>
 #include <QStringList>
 
@@ -10,6 +11,8 @@
 class QComboBox;
 class QFormLayout;
 class QWidget;
+class qMRMLThreeDWidget;
+class vtkMRMLNode;
 
 namespace qSlicerFenestraWidgets {
 
@@ -20,6 +23,9 @@ struct Choice {
 
 /// Sets the flag values of the items, whose texts are in the .ui file.
 void setItemData(QComboBox* box, const QStringList& data);
+/// Gives the items icons: the resources "kind-data", where there is one. Only the list shows them
+/// large: the box stays one line high.
+void setItemIcons(QComboBox* box, const QString& kind);
 /// Adds a choice at `index` or removes it; the selection stays.
 void setChoiceOffered(QComboBox* box, int index, const Choice& choice, bool offered);
 /// Selects the item with `data`, else the first.
@@ -37,6 +43,13 @@ void nameParts(QWidget* panel);
 
 /// Value of a flag; empty: not set.
 QString findFlag(const std::map<std::string, std::string>& flags, const char* name);
+/// Value of a flag that limits something; empty (not passed): no limit.
+std::string toLimitFlag(double value);
+
+/// The widget of a 3D view; null as `view`: of the first one; null: there is none.
+qMRMLThreeDWidget* find3DWidget(vtkMRMLNode* view);
+/// Size in pixels of a 3D view, or else of the first one; empty: there is none, or it is hidden.
+QSize find3DViewSize(vtkMRMLNode* view);
 
 } // namespace qSlicerFenestraWidgets
 

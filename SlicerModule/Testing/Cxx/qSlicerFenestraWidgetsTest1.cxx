@@ -7,6 +7,7 @@
 #include "qSlicerFenestraLook.h"
 #include "qSlicerFenestraMargins.h"
 #include "qSlicerFenestraPreviewLabel.h"
+#include "qSlicerFenestraQuality.h"
 #include "qSlicerFenestraSettings.h"
 
 #include <ctkCollapsibleGroupBox.h>
@@ -57,8 +58,9 @@ int checkLookDefaults() {
   CHECK_BOOL(takeFlags(look) == dark, true);
   look.show(dark, {}, false);
   CHECK_BOOL(takeFlags(look) == dark, true);
-  for (const char* preset : {"ct-anatomy", "ct-contrast", "ct-lung", "ct-bone", "ct-skin",
-                             "ct-soft", "ct-skeleton", "mr-anatomy", "mr-knee", "us-fetal"}) {
+  for (const char* preset :
+       {"ct-anatomy", "ct-contrast", "ct-lung", "ct-bone", "ct-skin", "ct-soft", "ct-skeleton",
+        "mr-anatomy", "mr-knee", "us-fetal", "pet"}) {
     choose(look, "TransferBox", preset);
     CHECK_STD_STRING(takeFlags(look)["transfer"], std::string(preset));
   }
@@ -136,40 +138,74 @@ int checkRigs() {
   return EXIT_SUCCESS;
 }
 
-/// Anatomies have icons where the resources contain one. The box is not higher than others.
+/// Anatomies, tissue colors and rigs have icons, except defaults and anatomies without data for
+/// one. The boxes are not higher than others.
 int checkIcons() {
-  qSlicerFenestraSettings panel;
-  QComboBox& anatomies = box(panel, "PresetBox");
-  CHECK_BOOL(anatomies.sizeHint().height() == box(panel, "ViewBox").sizeHint().height(), true);
-  for (const char* name : {"spine", "heart", "lungs"})
-    CHECK_BOOL(anatomies.itemIcon(anatomies.findData(name)).isNull(), name == std::string("heart"));
+  const qSlicerFenestraSettings panel;
+  const int height = box(panel, "ViewBox").sizeHint().height();
+  const std::map<const char*, QStringList> without = {
+      {"PresetBox", {"", "auto", "heart", "brain-tumor"}}, {"TransferBox", {""}}, {"RigBox", {""}}};
+  for (const auto& [name, data] : without) {
+    const QComboBox& choices = box(panel, name);
+    CHECK_INT(choices.sizeHint().height(), height);
+    for (int i = 0; i < choices.count(); ++i)
+      CHECK_BOOL(choices.itemIcon(i).isNull(), data.contains(choices.itemData(i).toString()));
+  }
   return EXIT_SUCCESS;
 }
 
 /// The preview is as wide as the panel and has the image's aspect ratio, but is not higher than
-/// wide.
+/// wide. It is smaller where other widgets need the height.
 int checkPreview() {
   QWidget panel;
   auto* preview = new qSlicerFenestraPreviewLabel;
+  auto* rest = new QWidget;
   auto* layout = new QVBoxLayout(&panel);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(preview);
-  layout->addStretch(1);
+  layout->setSpacing(0);
+  layout->addWidget(preview, 1);
+  layout->addWidget(rest);
+  layout->addStretch(0);
   panel.resize(512, 800);
   panel.show();
-  preview->setText("Load a volume");
-  CHECK_BOOL(preview->heightForWidth(512) < 100, true);
-  QPixmap image(256, 192);
+  preview->showText("Load a volume");
+  CHECK_BOOL(preview->maximumHeight() < 100, true);
+  QImage image(256, 192, QImage::Format_RGB32);
   image.fill(Qt::red);
-  preview->setPixmap(image);
+  preview->showImage(image);
   QApplication::processEvents();
   CHECK_BOOL(preview->size() == QSize(512, 384), true);
   const QImage shown = preview->grab().toImage();
   for (const QPoint& corner : {QPoint(2, 2), QPoint(509, 381)})
     CHECK_BOOL(shown.pixelColor(corner) == QColor(Qt::red), true);
-  preview->setPixmap(image.scaled(96, 256));
+  preview->showImage(image.scaled(96, 256));
   QApplication::processEvents();
   CHECK_BOOL(preview->size() == QSize(512, 512), true);
+  rest->setMinimumHeight(500);
+  QApplication::processEvents();
+  CHECK_INT(preview->height(), 300);
+  rest->setMinimumHeight(2000);
+  QApplication::processEvents();
+  CHECK_INT(preview->height(), preview->sizeHint().height());
+  return EXIT_SUCCESS;
+}
+
+/// A size "as the 3D view" follows the view's size, up to the limit of the boxes.
+int checkViewSize() {
+  const qSlicerFenestraQuality quality;
+  Flags flags = {{"size", "512x512"}};
+  const auto follow = [&](const char* viewSize, const QSize& view) {
+    return quality.followView(flags, viewSize, view).toStdString();
+  };
+  CHECK_STD_STRING(follow("2 512x512", {700, 500}), "2 1400x1000");
+  CHECK_STD_STRING(flags["size"], "1400x1000");
+  CHECK_STD_STRING(follow("2 1400x1000", {}), "2 1400x1000"); // there is no view
+  CHECK_STD_STRING(follow("4 1400x1000", {3840, 1920}), "4 8192x4096");
+  CHECK_STD_STRING(flags["size"], "8192x4096");
+  for (const char* fixed : {"", "2 512x512", "0 8192x4096", "-1 8192x4096", "x"}) {
+    follow(fixed, {700, 500});
+    CHECK_STD_STRING(flags["size"], "8192x4096");
+  }
   return EXIT_SUCCESS;
 }
 
@@ -224,6 +260,7 @@ int qSlicerFenestraWidgetsTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkRigs());
   CHECK_EXIT_SUCCESS(checkIcons());
   CHECK_EXIT_SUCCESS(checkPreview());
+  CHECK_EXIT_SUCCESS(checkViewSize());
   CHECK_EXIT_SUCCESS(checkAutomatic());
   return EXIT_SUCCESS;
 }

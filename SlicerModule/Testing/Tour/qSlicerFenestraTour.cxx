@@ -238,6 +238,7 @@ bool qSlicerFenestraTour::changeClipping() {
   if (!click("ShowButton"))
     return false;
   fold("WhatToShow", true);
+  fold("ClippingSection", false);
   const bool hole = takePreviewScreenshot("12-hole", [this] {
     const bool chosen = choose("ClipBox", "hole");
     set("holemarginBox", 8.0);
@@ -266,7 +267,6 @@ bool qSlicerFenestraTour::changeView() {
     scrollTo("PreviewBox");
     return choose("ViewBox", "auto");
   });
-  fold("ClippingSection", false);
   fold("WhatToShow", false);
   return best && takePreviewScreenshot("15-anatomy", [this] {
            scrollTo("PreviewBox");

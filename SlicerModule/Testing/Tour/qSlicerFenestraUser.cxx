@@ -109,7 +109,7 @@ bool qSlicerFenestraUser::takePreviewScreenshot(const char* name,
     return false;
   wait(4000);
   takeScreenshot(name);
-  return m_panel->findChild<QLabel*>("PreviewStateLabel")->text().startsWith("Preview:");
+  return m_panel->findChild<QLabel*>("PreviewStateLabel")->text().contains("samples per pixel");
 }
 
 bool qSlicerFenestraUser::waitFor(const std::function<bool()>& condition, int milliseconds) {
