@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the icons of tissue colors and light rigs in Slicer's panel: a diagram of each transfer function, and the face of
-# the fetus phantom in the light of each rig. usage: bash Resources/figures/thumbnails.sh
+# Makes the icons of tissue colors and light rigs in Slicer's panel: a diagram of each transfer function, and the face
+# of the fetus phantom in the light of each rig. usage: bash Resources/figures/thumbnails.sh
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
 install_packages python3
 size=192
