@@ -361,9 +361,11 @@ int checkRenders(const Panel& panel) {
   // Repeat restores the settings of the first image.
   panel.choose("ViewBox", "anterior");
   panel.choose("RigBox", "studio");
+  panel.choose("SizeBox", "2");
   CHECK_BOOL(endsOneRender(panel, [&] { panel.find<QPushButton>("RepeatButton")->click(); }), true);
   CHECK_STD_STRING(panel.settings()->GetFlag("view"), "left");
   CHECK_STD_STRING(panel.chosen("RigBox").toStdString(), "soft");
+  CHECK_STD_STRING(panel.chosen("SizeBox").toStdString(), ""); // fixed, whatever the 3D view's is
   CHECK_BOOL(panel.chosenRender() != first, true);
   CHECK_BOOL(radianceOf(first).isEmpty(), false);
   CHECK_BOOL(radianceOf(panel.chosenRender()) == radianceOf(first), true);
