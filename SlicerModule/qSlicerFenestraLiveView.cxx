@@ -1,11 +1,10 @@
 #include "qSlicerFenestraLiveView.h"
 
+#include "qSlicerFenestra3DViews.h"
 #include "qSlicerFenestraSession.h"
 
 #include <qMRMLThreeDView.h>
 #include <qMRMLThreeDWidget.h>
-#include <qSlicerApplication.h>
-#include <qSlicerLayoutManager.h>
 
 #include <vtkMRMLCameraNode.h>
 #include <vtkMRMLDisplayableNode.h>
@@ -22,17 +21,6 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 using SlicerExport::LiveState;
-
-/// The widget of a 3D view, or of the first one; null: there is none.
-qMRMLThreeDWidget* findWidget(vtkMRMLNode* view) {
-  const qSlicerApplication* application = qSlicerApplication::application();
-  qSlicerLayoutManager* layout = application ? application->layoutManager() : nullptr;
-  for (int i = 0; layout && i < layout->threeDViewCount(); ++i)
-    if (qMRMLThreeDWidget* widget = layout->threeDWidget(i);
-        widget && (!view || widget->mrmlViewNode() == view))
-      return widget;
-  return nullptr;
-}
 
 /// The camera that an image shows.
 FenestraViewCamera toCamera(const SlicerExport::Frame& frame) {
@@ -118,7 +106,8 @@ void qSlicerFenestraLiveView::observe(Node* settings) {
 /// Observes the settings' view. Returns false if there is none.
 bool qSlicerFenestraLiveView::followView(Node* settings) {
   qMRMLThreeDWidget* widget =
-      settings ? findWidget(settings->GetNodeReference(Node::ViewRole)) : nullptr;
+      settings ? qSlicerFenestra3DViews::findWidget(settings->GetNodeReference(Node::ViewRole))
+               : nullptr;
   vtkMRMLViewNode* view = widget ? widget->mrmlViewNode() : nullptr;
   vtkMRMLCameraNode* camera = m_logic->GetCamera(view);
   vtkRenderWindow* window = camera ? widget->threeDView()->renderWindow() : nullptr;

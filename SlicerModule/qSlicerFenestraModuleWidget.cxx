@@ -1,5 +1,6 @@
 #include "qSlicerFenestraModuleWidget.h"
 
+#include "qSlicerFenestra3DViews.h"
 #include "qSlicerFenestraMeasures.h"
 #include "qSlicerFenestraModule.h"
 #include "qSlicerFenestraSaving.h"
@@ -16,7 +17,6 @@
 #include <vtkCommand.h>
 #include <vtkMRMLScene.h>
 #include <vtkRenderWindow.h>
-#include <vtkWeakPointer.h>
 
 #include <QJsonDocument>
 #include <QPointer>
@@ -204,7 +204,7 @@ void qSlicerFenestraModuleWidget::followView() {
   Q_D(qSlicerFenestraModuleWidget);
   Node* settings = d->Settings->node();
   const qMRMLThreeDWidget* view =
-      settings ? qSlicerFenestraWidgets::find3DWidget(settings->GetNodeReference(Node::ViewRole))
+      settings ? qSlicerFenestra3DViews::findWidget(settings->GetNodeReference(Node::ViewRole))
                : nullptr;
   vtkRenderWindow* window = view ? view->threeDView()->renderWindow() : nullptr;
   if (window != d->window)

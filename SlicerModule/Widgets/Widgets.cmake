@@ -8,7 +8,7 @@ foreach(name Clipping Look Margins Materials Player Quality Settings Turntable)
   list(APPEND widget_moc_sources Widgets/qSlicerFenestra${name}.h)
   list(APPEND widget_ui_sources Resources/UI/qSlicerFenestra${name}.ui)
 endforeach()
-foreach(name Lights Measures PreviewLabel Saving Widgets)
+foreach(name 3DViews Lights Measures PreviewLabel Saving Widgets)
   list(APPEND widget_sources Widgets/qSlicerFenestra${name}.cxx Widgets/qSlicerFenestra${name}.h)
 endforeach()
 list(APPEND widget_sources Widgets/qSlicerFenestraAutomaticBox.h Widgets/qSlicerFenestraOpening.cxx

@@ -1,6 +1,7 @@
 #include "qSlicerFenestraSettings.h"
 
 #include "FenestraFlags.h"
+#include "qSlicerFenestra3DViews.h"
 #include "qSlicerFenestraWidgets.h"
 #include "ui_qSlicerFenestraSettings.h"
 #include "vtkMRMLFenestraRenderNode.h"
@@ -383,7 +384,7 @@ void qSlicerFenestraSettings::followViewSize() {
 /// Writes the flags. `viewSize`: of an image "as the 3D view", which gets the view's present size.
 void qSlicerFenestraSettingsPrivate::store(Flags flags, const QString& viewSize) {
   const QString size = QualityAndSize->followView(
-      flags, viewSize, find3DViewSize(node->GetNodeReference(Node::ViewRole)));
+      flags, viewSize, qSlicerFenestra3DViews::findSize(node->GetNodeReference(Node::ViewRole)));
   const int wasModifying = node->StartModify();
   node->SetAttribute(Node::ViewSizeAttribute, size.isEmpty() ? nullptr : size.toUtf8().constData());
   node->SetFlags(flags);

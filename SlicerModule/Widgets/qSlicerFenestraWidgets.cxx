@@ -1,12 +1,5 @@
 #include "qSlicerFenestraWidgets.h"
 
-#include <qMRMLThreeDView.h>
-#include <qMRMLThreeDWidget.h>
-#include <qSlicerApplication.h>
-#include <qSlicerLayoutManager.h>
-
-#include <vtkMRMLViewNode.h>
-
 #include <QAbstractButton>
 #include <QAbstractItemView>
 #include <QComboBox>
@@ -111,26 +104,4 @@ QString qSlicerFenestraWidgets::findFlag(const std::map<std::string, std::string
 
 std::string qSlicerFenestraWidgets::toLimitFlag(double value) {
   return value > 0.0 ? QString::number(value, 'g', 6).toStdString() : std::string();
-}
-
-qMRMLThreeDWidget* qSlicerFenestraWidgets::find3DWidget(vtkMRMLNode* view) {
-  const qSlicerApplication* application = qSlicerApplication::application();
-  qSlicerLayoutManager* layout = application ? application->layoutManager() : nullptr;
-  for (int i = 0; layout && i < layout->threeDViewCount(); ++i)
-    if (qMRMLThreeDWidget* widget = layout->threeDWidget(i);
-        widget && (!view || widget->mrmlViewNode() == view))
-      return widget;
-  return nullptr;
-}
-
-QSize qSlicerFenestraWidgets::find3DViewSize(vtkMRMLNode* view) {
-  constexpr int least = 64; // pixels; a smaller one is collapsed
-  const qMRMLThreeDWidget* widget = find3DWidget(view);
-  if (!widget)
-    widget = find3DWidget(nullptr);
-  if (!widget || !widget->isVisible())
-    return {};
-  const QWidget* area = widget->threeDView();
-  const QSize size = area->size() * area->devicePixelRatioF();
-  return qMin(size.width(), size.height()) < least ? QSize() : size;
 }

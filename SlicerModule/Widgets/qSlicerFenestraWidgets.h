@@ -1,7 +1,6 @@
 #ifndef __qSlicerFenestraWidgets_h
 #define __qSlicerFenestraWidgets_h
 
-#include <QSize>
 #include <QString>
 #include <QStringList>
 
@@ -11,8 +10,6 @@
 class QComboBox;
 class QFormLayout;
 class QWidget;
-class qMRMLThreeDWidget;
-class vtkMRMLNode;
 
 namespace qSlicerFenestraWidgets {
 
@@ -45,11 +42,6 @@ void nameParts(QWidget* panel);
 QString findFlag(const std::map<std::string, std::string>& flags, const char* name);
 /// Value of a flag that limits something; empty (not passed): no limit.
 std::string toLimitFlag(double value);
-
-/// The widget of a 3D view; null as `view`: of the first one; null: there is none.
-qMRMLThreeDWidget* find3DWidget(vtkMRMLNode* view);
-/// Size in pixels of a 3D view, or else of the first one; empty: there is none, or it is hidden.
-QSize find3DViewSize(vtkMRMLNode* view);
 
 } // namespace qSlicerFenestraWidgets
 
