@@ -38,7 +38,7 @@ slicerMacroBuildLoadableModule(
        qSlicerFenestraModuleWidget.cxx qSlicerFenestraModuleWidget.h
        qSlicerFenestraResults.cxx qSlicerFenestraResults.h
        qSlicerFenestraSession.cxx qSlicerFenestraSession.h qSlicerFenestraSessionOpening.cxx
-       qSlicerFenestraSessionPreview.cxx
+       qSlicerFenestraSessionPreview.cxx qSlicerFenestraSessionScripts.cxx
        qSlicerSubjectHierarchyFenestraPlugin.cxx qSlicerSubjectHierarchyFenestraPlugin.h
        ${widget_sources}
   MOC_SRCS qSlicerFenestraImageClicks.h qSlicerFenestraLiveView.h qSlicerFenestraModule.h

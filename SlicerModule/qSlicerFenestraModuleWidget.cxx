@@ -11,8 +11,6 @@
 
 #include <qMRMLThreeDView.h>
 #include <qMRMLThreeDWidget.h>
-#include <qSlicerCoreApplication.h>
-#include <qSlicerCoreIOManager.h>
 
 #include <vtkCommand.h>
 #include <vtkMRMLScene.h>
@@ -433,11 +431,7 @@ void qSlicerFenestraModuleWidget::loadSample() {
     d->setLoading(false);
     if (scene.isEmpty())
       return d->setStatus(tr("The sample could not be generated."), message);
-    qSlicerIO::IOProperties properties;
-    properties["fileName"] = scene;
-    properties["clear"] = false;
-    qSlicerCoreApplication::application()->coreIOManager()->loadNodes("SceneFile", properties);
-    self->fenestraLogic()->ShowNewestVolume();
+    d->session->loadSample(scene);
     d->setStatus(tr("The synthetic knee is loaded. Choose a segment as focus."));
   });
 }

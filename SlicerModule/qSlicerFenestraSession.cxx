@@ -6,7 +6,6 @@
 
 #include <QDebug>
 #include <QDir>
-#include <QEventLoop>
 #include <QFile>
 #include <QFileInfo>
 
@@ -44,6 +43,9 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
   qvtkConnect(m_logic, vtkSlicerFenestraLogic::StopRequestedEvent, this, SLOT(stop()));
   qvtkConnect(m_logic, vtkSlicerFenestraLogic::ViewChangedEvent, this, SLOT(onViewChanged()));
   qvtkConnect(m_logic, vtkSlicerFenestraLogic::OpeningChangedEvent, this, SLOT(onOpeningChanged()));
+  qvtkConnect(m_logic, vtkSlicerFenestraLogic::OpeningWaitEvent, this, SLOT(onOpeningWait()));
+  qvtkConnect(m_logic, vtkSlicerFenestraLogic::SampleRequestedEvent, this,
+              SLOT(onSampleRequested()));
   m_openingTimer.setSingleShot(true);
   m_openingTimer.setInterval(interval);
   connect(&m_openingTimer, &QTimer::timeout, this, &qSlicerFenestraSession::updateOpening);
@@ -196,17 +198,6 @@ void qSlicerFenestraSession::submit(int id, const SlicerExport::Contents& conten
   });
 }
 
-/// Processes events, except user input, until the render has ended.
-void qSlicerFenestraSession::onRenderWait(vtkObject*, vtkObject* render) {
-  QEventLoop loop;
-  connect(this, &qSlicerFenestraSession::ended, &loop, [&loop, node = Node::SafeDownCast(render)] {
-    if (!node->IsRendering())
-      loop.quit();
-  });
-  connect(this, &QObject::destroyed, &loop, &QEventLoop::quit);
-  loop.exec(QEventLoop::ExcludeUserInputEvents);
-}
-
 /// Waits until the view has changed completely.
 void qSlicerFenestraSession::onViewChanged() {
   runInMainThread([this] { m_logic->AlignView(); });
@@ -325,27 +316,4 @@ void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) 
   emit ended(hasResult ? node.GetPointer() : nullptr, {outcome.kind, message, outcome.details});
   if (!isRendering())
     refresh();
-}
-
-void qSlicerFenestraSession::makeSample(
-    const std::function<void(const QString& scene, const QString& failure)>& then) {
-  if (m_sampleTimer.isActive())
-    return;
-  if (!m_sample)
-    m_sample = std::make_unique<qFenestraFolder>(QDir::tempPath(), folderPrefix);
-  const QString folder = m_sample->filePath("knee");
-  auto* child = new qFenestraProgram(this);
-  connect(child, &qFenestraProgram::ended, this,
-          [this, child, folder, then](const qFenestraOutcome& outcome) {
-            child->deleteLater();
-            m_sampleTimer.stop();
-            const bool isDone = outcome.kind == Ended::done;
-            then(isDone ? folder + "/knee.mrml" : QString(), outcome.message + outcome.details);
-          });
-  // Coarser than the default, as a clinical scan is, so that it takes half as long.
-  child->run(m_program, {"phantom", "knee", "--size", "240x276x96", "--quiet", "--output", folder},
-             m_sample->path());
-  m_sampleTime.start();
-  m_sampleTimer.start();
-  emit sampleProgressed(0.0);
 }

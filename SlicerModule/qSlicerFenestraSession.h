@@ -73,6 +73,8 @@ public:
   /// Generates the synthetic sample knee, then calls `then` with the path of its scene or with an
   /// error message. `sampleProgressed` reports the time until then. Ignored while one is generated.
   void makeSample(const std::function<void(const QString& scene, const QString& failure)>& then);
+  /// Adds the generated sample to the scene, and shows it.
+  void loadSample(const QString& scene);
 
   const qSlicerFenestraResults& results() const { return m_results; }
 
@@ -103,6 +105,8 @@ signals:
 private slots:
   void onRenderRequested(vtkObject* logic, vtkObject* render);
   void onRenderWait(vtkObject* logic, vtkObject* render);
+  void onOpeningWait();
+  void onSampleRequested();
   void onViewChanged();
   void onOpeningChanged();
   void onOpenedDataChanged();
@@ -147,6 +151,8 @@ private:
 
   void updateOpening();
   void showOpeningProblem();
+  void setOpeningProblem(const std::string& problem);
+  bool isOpeningPending() const;
   void observeOpening(vtkMRMLFenestraRenderNode* settings);
   void startFocus(const SlicerExport::Contents& contents, const Flags& flags);
   using Focus = vtkMRMLFenestraOpeningNode::Focus;

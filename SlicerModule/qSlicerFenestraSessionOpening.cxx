@@ -172,15 +172,22 @@ void qSlicerFenestraSession::updateOpening() {
   } catch (const SlicerExport::UserError& error) {
     m_focusKey.clear();
     m_opening->SetFocus(nullptr, {});
-    m_opening->SetProblem(error.what());
+    setOpeningProblem(error.what());
   }
 }
 
 /// That of the focus, or else of the settings.
 void qSlicerFenestraSession::showOpeningProblem() {
-  m_opening->SetProblem(m_focusProblem.empty()
-                            ? vtkSlicerFenestraLogic::FindOpeningProblem(m_opening->GetSettings())
-                            : m_focusProblem);
+  setOpeningProblem(m_focusProblem.empty()
+                        ? vtkSlicerFenestraLogic::FindOpeningProblem(m_opening->GetSettings())
+                        : m_focusProblem);
+}
+
+/// Logs another problem than before.
+void qSlicerFenestraSession::setOpeningProblem(const std::string& problem) {
+  if (!problem.empty() && problem != m_opening->GetProblem())
+    qWarning().noquote() << "Fenestra:" << QString::fromStdString(problem);
+  m_opening->SetProblem(problem);
 }
 
 /// Lets the renderer write the triangles, since it smooths and trims the focus of images.
@@ -233,8 +240,6 @@ void qSlicerFenestraSession::readFocus(
 void qSlicerFenestraSession::endFocus(Opening* opening, const Opening::Focus& focus,
                                       const fenestra::core::BoxCorners& corners,
                                       const QString& problem) {
-  if (!problem.isEmpty())
-    qCritical().noquote() << "Fenestra:" << problem;
   opening->SetPreparing(false);
   if (opening != m_opening)
     return;

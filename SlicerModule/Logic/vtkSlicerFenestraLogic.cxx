@@ -148,6 +148,23 @@ Node* vtkSlicerFenestraLogic::Start(Node* settings, bool turntable, bool wait) {
   return failed ? nullptr : render.GetPointer();
 }
 
+vtkMRMLScalarVolumeNode* vtkSlicerFenestraLogic::LoadSample() {
+  vtkMRMLScene* scene = this->GetMRMLScene();
+  const auto findVolumes = [scene] {
+    std::vector<vtkMRMLNode*> volumes;
+    if (scene)
+      scene->GetNodesByClass("vtkMRMLScalarVolumeNode", volumes);
+    return volumes;
+  };
+  const size_t before = findVolumes().size();
+  this->InvokeEvent(SampleRequestedEvent);
+  const std::vector<vtkMRMLNode*> volumes = findVolumes();
+  if (volumes.size() > before)
+    return vtkMRMLScalarVolumeNode::SafeDownCast(volumes.back());
+  vtkErrorMacro("LoadSample: the sample was not loaded");
+  return nullptr;
+}
+
 void vtkSlicerFenestraLogic::StopRender() {
   this->InvokeEvent(StopRequestedEvent);
 }

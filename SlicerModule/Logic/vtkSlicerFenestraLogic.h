@@ -58,13 +58,17 @@ public:
   /// Requests to the renderer, which observes them: the module's session. The call data of the
   /// first two is the render's node. RenderRequestedEvent: set the node's state, render, and call
   /// its EndRender. RenderWaitEvent: return when the render has ended. ViewChangedEvent: call
-  /// AlignView later. OpeningChangedEvent: GetOpening may return another node.
+  /// AlignView later. OpeningChangedEvent: GetOpening may return another node. OpeningWaitEvent:
+  /// return when GetOpening shows what it was asked for, or cannot. SampleRequestedEvent: load the
+  /// sample.
   enum {
     RenderRequestedEvent = 62180,
     RenderWaitEvent,
     StopRequestedEvent,
     ViewChangedEvent,
-    OpeningChangedEvent
+    OpeningChangedEvent,
+    OpeningWaitEvent,
+    SampleRequestedEvent
   };
   /// Renders the settings in the background and returns the render's node, which reports progress
   /// and end as events (RenderProgressEvent, RenderEndEvent). Null: failed, the log says why.
@@ -78,18 +82,22 @@ public:
 
   /// Opens the 3D views: cuts the volume rendering by the clipping surface of the settings' focus,
   /// from now on and for every camera. Shows the volume rendering, created if missing. Null: there
-  /// is no volume or no focus, the log says so.
-  vtkMRMLFenestraOpeningNode* OpenView(vtkMRMLFenestraRenderNode* settings);
+  /// is no volume or no focus, the log says so. `wait`: returns once the views are cut; then null
+  /// also means that they cannot be.
+  vtkMRMLFenestraOpeningNode* OpenView(vtkMRMLFenestraRenderNode* settings, bool wait = false);
   /// The same after setting the focus to one segment. If it is of another segmentation than before,
-  /// or there was no volume, takes the volume on which the segmentation was made.
+  /// or there was no volume, takes the volume on which the segmentation was made; if that is
+  /// unknown and there was none, the volume of the slice views.
   vtkMRMLFenestraOpeningNode* OpenSegment(vtkMRMLSegmentationNode* segmentation,
-                                          const std::string& segmentId);
+                                          const std::string& segmentId, bool wait = false);
   /// The same with another volume.
   vtkMRMLFenestraOpeningNode* OpenVolume(vtkMRMLScalarVolumeNode* volume);
   void CloseView();
   /// Shows a path-traced image of the settings in their 3D view, or else the first one, while its
   /// camera rests; it is refined until its noise is low. Null: there is no volume, the log says so.
-  vtkMRMLFenestraOpeningNode* ShowPhotorealistic(vtkMRMLFenestraRenderNode* settings);
+  /// `wait`: returns once the first image is there; then null also means that there is none.
+  vtkMRMLFenestraOpeningNode* ShowPhotorealistic(vtkMRMLFenestraRenderNode* settings,
+                                                 bool wait = false);
   void HidePhotorealistic();
   /// The scene's opened view, the first if there are several, visible or not; null: none.
   vtkMRMLFenestraOpeningNode* GetOpening();
@@ -101,6 +109,10 @@ public:
 
   /// True if the settings have a volume.
   static bool CanShowPhotorealistic(vtkMRMLFenestraRenderNode* settings);
+
+  /// Generates the synthetic sample knee on this computer, adds it to the scene and returns its
+  /// volume after some seconds. Null: failed, the log says why.
+  vtkMRMLScalarVolumeNode* LoadSample();
 
   /// Writes the scene as the renderer would receive it into a folder, created if missing, and
   /// returns its path; empty: failed, the log says why.
@@ -188,6 +200,7 @@ protected:
 
 private:
   vtkMRMLFenestraOpeningNode* AddOpening(vtkMRMLFenestraRenderNode* settings);
+  vtkMRMLFenestraOpeningNode* WaitForOpening(const char* caller);
   vtkMRMLFenestraRenderNode* Start(vtkMRMLFenestraRenderNode* settings, bool turntable, bool wait);
   vtkMRMLSliceLogic* GetPictureSliceLogic();
   SlicerExport::Matrix MoveOutsideVolume(vtkMRMLFenestraRenderNode* render,

@@ -8,6 +8,7 @@
 #include <vtkMRMLScalarVolumeNode.h>
 #include <vtkMRMLScene.h>
 #include <vtkMRMLSegmentationNode.h>
+#include <vtkMRMLSelectionNode.h>
 #include <vtkMRMLVolumeRenderingDisplayNode.h>
 #include <vtkSlicerVolumeRenderingLogic.h>
 
@@ -49,7 +50,7 @@ Opening* vtkSlicerFenestraLogic::GetOpening() {
                : nullptr;
 }
 
-Opening* vtkSlicerFenestraLogic::OpenView(Node* settings) {
+Opening* vtkSlicerFenestraLogic::OpenView(Node* settings, bool wait) {
   vtkMRMLScene* scene = this->GetMRMLScene();
   if (!scene || !CanOpenView(settings)) {
     vtkErrorMacro("OpenView: the settings have no volume, or no focus");
@@ -65,8 +66,23 @@ Opening* vtkSlicerFenestraLogic::OpenView(Node* settings) {
   if (display)
     display->SetVisibility(1);
   Opening* opening = this->AddOpening(settings);
+  if (!opening->GetProblem().empty())
+    opening->SetVisible(false); // so that opening it again tries again
   opening->SetVisible(true);
-  return opening;
+  return wait ? this->WaitForOpening("OpenView") : opening;
+}
+
+/// The opened view, once it shows what it was asked for; null: it cannot, and the log says why.
+Opening* vtkSlicerFenestraLogic::WaitForOpening(const char* caller) {
+  this->InvokeEvent(OpeningWaitEvent);
+  Opening* opening = this->GetOpening();
+  if (!opening || (opening->GetVisible() && !opening->GetProblem().empty()))
+    vtkErrorMacro(<< caller << ": the view is not cut. " << (opening ? opening->GetProblem() : ""));
+  else if (opening->GetPhotorealistic() && !opening->HasImage())
+    vtkErrorMacro(<< caller << ": no 3D view shows an image");
+  else
+    return opening;
+  return nullptr;
 }
 
 /// The scene's opened view, created if missing, with these settings.
@@ -83,14 +99,16 @@ bool vtkSlicerFenestraLogic::CanShowPhotorealistic(Node* settings) {
   return settings && FindVolume(settings);
 }
 
-Opening* vtkSlicerFenestraLogic::ShowPhotorealistic(Node* settings) {
+Opening* vtkSlicerFenestraLogic::ShowPhotorealistic(Node* settings, bool wait) {
   if (!this->GetMRMLScene() || !CanShowPhotorealistic(settings)) {
     vtkErrorMacro("ShowPhotorealistic: the settings have no volume");
     return nullptr;
   }
   Opening* opening = this->AddOpening(settings);
+  if (wait)
+    opening->SetPhotorealistic(false); // drops an image of other settings
   opening->SetPhotorealistic(true);
-  return opening;
+  return wait ? this->WaitForOpening("ShowPhotorealistic") : opening;
 }
 
 void vtkSlicerFenestraLogic::HidePhotorealistic() {
@@ -99,7 +117,7 @@ void vtkSlicerFenestraLogic::HidePhotorealistic() {
 }
 
 Opening* vtkSlicerFenestraLogic::OpenSegment(vtkMRMLSegmentationNode* segmentation,
-                                             const std::string& segmentId) {
+                                             const std::string& segmentId, bool wait) {
   Node* settings = this->GetSettings();
   if (!settings || !segmentation) {
     vtkErrorMacro("OpenSegment: there is no segmentation");
@@ -108,11 +126,16 @@ Opening* vtkSlicerFenestraLogic::OpenSegment(vtkMRMLSegmentationNode* segmentati
   const std::string role = vtkMRMLSegmentationNode::GetReferenceImageGeometryReferenceRole();
   const char* reference = segmentation->GetNodeReferenceID(role.c_str());
   const bool isOther = settings->GetNodeReference(Node::SegmentationRole) != segmentation;
-  if (!FindVolume(settings) || (isOther && reference))
+  if (isOther && reference)
     settings->SetNodeReferenceID(Node::VolumeRole, reference);
+  vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
+  vtkMRMLSelectionNode* selection = application ? application->GetSelectionNode() : nullptr;
+  if (!FindVolume(settings) && (reference || selection))
+    settings->SetNodeReferenceID(Node::VolumeRole,
+                                 reference ? reference : selection->GetActiveVolumeID());
   settings->SetNodeReferenceID(Node::SegmentationRole, segmentation->GetID());
   settings->SetFocus(std::vector<std::string>{segmentId});
-  return this->OpenView(settings);
+  return this->OpenView(settings, wait);
 }
 
 Opening* vtkSlicerFenestraLogic::OpenVolume(vtkMRMLScalarVolumeNode* volume) {

@@ -146,6 +146,11 @@ void vtkMRMLFenestraRenderNode::SetFocus(const std::vector<std::string>& segment
   this->SetFlag("focus", SlicerExport::joinList(segments));
 }
 
+void vtkMRMLFenestraRenderNode::SetFocus(const char* segment) {
+  const bool isEmpty = !segment || !*segment;
+  this->SetFocus(isEmpty ? std::vector<std::string>() : std::vector<std::string>{segment});
+}
+
 std::vector<std::string> vtkMRMLFenestraRenderNode::GetFocus() const {
   return SlicerExport::splitList(this->GetFlag("focus"));
 }

@@ -81,10 +81,20 @@ public:
   void EndRender(const std::string& problem);
 
   /// Focus segments by id, name or label value: the flag `focus`, split at its commas. A single
-  /// text is the flag itself: several segments are separated by commas; null: no focus.
+  /// text is one segment, since a list of its letters never is meant; null or empty: no focus.
   void SetFocus(const std::vector<std::string>& segments);
-  void SetFocus(const char* segments) { this->SetFlag("focus", segments ? segments : ""); }
+  void SetFocus(const char* segment);
   std::vector<std::string> GetFocus() const;
+
+  /// Volume and segmentation that are rendered; null: none.
+  void SetVolumeNode(vtkMRMLNode* volume) { this->SetInput(VolumeRole, volume); }
+  vtkMRMLNode* GetVolumeNode() { return this->GetNodeReference(VolumeRole); }
+  void SetSegmentationNode(vtkMRMLNode* segmentation) {
+    this->SetInput(SegmentationRole, segmentation);
+  }
+  vtkMRMLNode* GetSegmentationNode() { return this->GetNodeReference(SegmentationRole); }
+  /// The image, a vector volume; null: none.
+  vtkMRMLNode* GetPictureNode() { return this->GetNodeReference(PictureRole); }
 
   /// Roles for SetNodeReferenceID and GetNodeReference, for scripts, which cannot read constants.
   static const char* GetVolumeNodeReferenceRole() { return VolumeRole; }
@@ -129,6 +139,9 @@ protected:
   vtkMRMLFenestraRenderNode(const vtkMRMLFenestraRenderNode&) = delete;
   void operator=(const vtkMRMLFenestraRenderNode&) = delete;
 
+  void SetInput(const char* role, vtkMRMLNode* node) {
+    this->SetNodeReferenceID(role, node ? node->GetID() : nullptr);
+  }
   using Values = std::map<std::string, std::string>;
   void Assign(Values flags, Values withheld, Values unknown);
 

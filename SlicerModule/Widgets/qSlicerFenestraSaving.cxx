@@ -5,6 +5,7 @@
 #include "vtkMRMLFenestraRenderNode.h"
 
 #include <QCoreApplication>
+#include <QDebug>
 #include <QFileDialog>
 #include <QMessageBox>
 
@@ -12,6 +13,11 @@ namespace {
 
 QString tr(const char* text, int count = -1) {
   return QCoreApplication::translate("qSlicerFenestraSaving", text, nullptr, count);
+}
+
+QString logFailure(const QString& message) {
+  qWarning().noquote() << "Fenestra:" << message;
+  return message;
 }
 
 /// Asks before files are replaced.
@@ -28,7 +34,8 @@ QString saveAs(const qFenestraCopies& copies, QWidget* parent) {
   const QString failed = copies.write();
   return failed.isEmpty()
              ? tr("Saved as %1.").arg(copies.names())
-             : tr("%1 could not be written and is unchanged. Choose another folder.").arg(failed);
+             : logFailure(tr("%1 could not be written and is unchanged. Choose another folder.")
+                              .arg(failed));
 }
 
 } // namespace
@@ -38,8 +45,8 @@ QString qSlicerFenestraSaving::save(vtkMRMLFenestraRenderNode* render,
   const bool isTurntable = render->IsTurntable();
   const QStringList frames = results.findFrames(render);
   if (isTurntable ? frames.isEmpty() : results.findFile(render, "png").isEmpty())
-    return tr("The files of this image were removed with the session that rendered it. Press "
-              "Repeat, then save.");
+    return logFailure(tr("The files of this image were removed with the session that rendered it. "
+                         "Press Repeat, then save."));
   const QString png = isTurntable ? tr("Numbered images (*.png)") : tr("Image (*.png)");
   const QString exr = tr("Linear color and depth (*.exr)");
   // Overwriting is confirmed for the final names, which may gain an extension or a number.

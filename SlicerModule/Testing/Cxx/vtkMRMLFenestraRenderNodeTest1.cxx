@@ -175,7 +175,9 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   CHECK_BOOL(first->SetFlag("clip", "Surface"), false);
   TESTING_OUTPUT_ASSERT_ERRORS_END();
   CHECK_BOOL(first->GetMTime() == before, true);
-  first->SetFocus("a\\,b,c");
+  first->SetFocus("a,b");
+  CHECK_BOOL(first->GetFocus() == std::vector<std::string>({"a,b"}), true);
+  first->SetFlag("focus", "a\\,b,c");
   CHECK_BOOL(first->GetFocus() == std::vector<std::string>({"a,b", "c"}), true);
   CHECK_BOOL(first->SetFlag("clip", ""), true);
   CHECK_INT(static_cast<int>(first->GetFlags().count("clip")), 0);

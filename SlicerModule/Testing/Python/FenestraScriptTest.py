@@ -1,30 +1,13 @@
-"""The module as scripts use it, with a sample knee: the tutorial's lines, wrong arguments, and the view of an image."""
+"""The module as scripts use it, with a sample knee: an image, wrong arguments, and the view of an image."""
 
 import pathlib
-import re
 import tempfile
-import time
 import unittest
 
-import qt
 import slicer
 import vtk
 
-
-def process_events():
-    """Waits longer than the timers of Slicer's new views, then for the events that they caused."""
-    loop = qt.QEventLoop()
-    qt.QTimer.singleShot(500, loop.quit)
-    loop.exec_()
-    for _ in range(5):
-        slicer.app.processEvents()
-
-
-def wait_for(condition, seconds=120):
-    end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
-        process_events()
-    return condition()
+from FenestraTesting import process_events, read_examples, type_example, wait_for
 
 
 class FenestraScriptTest(unittest.TestCase):
@@ -32,16 +15,11 @@ class FenestraScriptTest(unittest.TestCase):
     def setUpClass(cls):
         slicer.mrmlScene.Clear()
         cls.folder = tempfile.TemporaryDirectory()
-        command = slicer.modules.fenestracommand.path
-        slicer.util.launchConsoleProcess([command, "phantom", "knee", "--output", cls.folder.name]).wait()
-        slicer.util.loadScene(f"{cls.folder.name}/knee.mrml")
         cls.logic = slicer.modules.fenestra.logic()
+        cls.logic.LoadSample()
         for name, value in {"samples": "2", "size": "96x64"}.items():
             assert cls.logic.GetSettings().SetFlag(name, value)
-        tutorial = pathlib.Path(__file__).parents[2] / "Tutorial.md"
-        lines = re.search(r"```python\n(.*?)```", tutorial.read_text(), re.DOTALL).group(1)
-        names = {"slicer": slicer, "getNode": slicer.util.getNode}
-        exec(lines, names)
+        names = type_example(read_examples()["Render an image and get it as a numpy array"])
         cls.settings, cls.render = names["settings"], names["render"]
 
     @classmethod
@@ -65,7 +43,7 @@ class FenestraScriptTest(unittest.TestCase):
         self.assertEqual((self.render.GetProblem(), self.logic.IsRendering(self.render)), ("", False))
 
     def test_focus_is_a_text_or_a_list(self):
-        for focus, expected in (("FemoralCartilage", ["FemoralCartilage"]), ("Femur,Tibia", ["Femur", "Tibia"]),
+        for focus, expected in (("FemoralCartilage", ["FemoralCartilage"]), ("Femur,Tibia", ["Femur,Tibia"]),
                                 (["Femur"], ["Femur"]), ((), [])):
             self.settings.SetFocus(focus)
             self.assertEqual(list(self.settings.GetFocus()), expected)
@@ -109,7 +87,9 @@ class FenestraScriptTest(unittest.TestCase):
 
     def test_opened_view(self):
         """A 3D view is cut while it is opened, by the surface of the focus that the settings name."""
-        self.assertEqual(self.errors(lambda: self.logic.OpenView(None)), (None, 1))
+        for wait in (False, True):
+            self.assertEqual(self.errors(lambda: self.logic.OpenView(None, wait)), (None, 1))
+            self.assertEqual(self.errors(lambda: self.logic.OpenSegment(None, "Femur", wait)), (None, 1))
         slicer.app.layoutManager().setLayout(slicer.vtkMRMLLayoutNode.SlicerLayoutOneUp3DView)
         view = slicer.app.layoutManager().threeDWidget(0).threeDView()
         manager = view.displayableManagerByClassName("vtkMRMLFenestraOpeningDisplayableManager")

@@ -33,7 +33,9 @@ assert not node.SetFlag("nonsense", "1") and len(messages) == 1, "an unknown opt
 assert not node.SetFlag("samples", "many") and len(messages) == 2, "so is a wrong value"
 node.SetFocus("FemoralCartilage")
 assert list(node.GetFocus()) == ["FemoralCartilage"], "a text is not a list of letters"
-node.SetFocus("a\\,b,c")
+node.SetFocus("a,b")
+assert list(node.GetFocus()) == ["a,b"], "a text is one name"
+node.SetFlag("focus", "a\\,b,c")
 assert list(node.GetFocus()) == ["a,b", "c"], "as on the command line"
 for empty in ("", [], None):
     node.SetFocus(empty)
@@ -52,6 +54,10 @@ roles = [getattr(Node, f"Get{role}NodeReferenceRole")() for role in
 assert roles == "volume segmentation view plane picture radiance depth surface".split()
 node.SetNodeReferenceID(Node.GetVolumeNodeReferenceRole(), "vtkMRMLScalarVolumeNode1")
 assert node.GetNodeReferenceID("volume") == "vtkMRMLScalarVolumeNode1"
+node.SetVolumeNode(node)
+assert node.GetNodeReferenceID("volume") == node.GetID()
+node.SetVolumeNode(None)
+assert node.GetNodeReferenceID("volume") == ""
 
 read = Node()
 read.ReadAttributes(["name", "other", "clip", "surface", "transfer", "/etc/passwd", "mood", "<deep>"])

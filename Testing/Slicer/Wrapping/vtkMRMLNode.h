@@ -41,6 +41,7 @@ public:
   virtual void WriteXML(std::ostream& of, int) {
     of << " name=\"" << XMLAttributeEncodeString(this->Name) << '"';
   }
+  const char* GetID() { return "vtkMRMLNode1"; }
   const char* GetName() { return this->Name.c_str(); }
   void SetName(const char* name) { this->Name = name ? name : ""; }
   const char* GetSingletonTag() { return nullptr; }
