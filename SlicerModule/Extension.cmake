@@ -32,19 +32,23 @@ slicerMacroBuildLoadableModule(
                       ${FENESTRA_PORTABLE_INCLUDE_DIR}
                       ${qSlicerSubjectHierarchyModuleWidgets_INCLUDE_DIRS}
                       ${vtkSlicerFenestraModuleMRMLDisplayableManager_INCLUDE_DIRS}
-  SRCS qSlicerFenestraImageClicks.cxx qSlicerFenestraImageClicks.h
+  SRCS qSlicerFenestraApplicationSettings.cxx qSlicerFenestraApplicationSettings.h
+       qSlicerFenestraImageClicks.cxx qSlicerFenestraImageClicks.h
        qSlicerFenestraLiveView.cxx qSlicerFenestraLiveView.h
        qSlicerFenestraModule.cxx qSlicerFenestraModule.h
        qSlicerFenestraModuleWidget.cxx qSlicerFenestraModuleWidget.h
        qSlicerFenestraResults.cxx qSlicerFenestraResults.h
        qSlicerFenestraSession.cxx qSlicerFenestraSession.h qSlicerFenestraSessionOpening.cxx
        qSlicerFenestraSessionPreview.cxx qSlicerFenestraSessionScripts.cxx
+       qSlicerFenestraSettingsPanel.cxx qSlicerFenestraSettingsPanel.h
        qSlicerSubjectHierarchyFenestraPlugin.cxx qSlicerSubjectHierarchyFenestraPlugin.h
        ${widget_sources}
   MOC_SRCS qSlicerFenestraImageClicks.h qSlicerFenestraLiveView.h qSlicerFenestraModule.h
-           qSlicerFenestraModuleWidget.h qSlicerFenestraSession.h qSlicerSubjectHierarchyFenestraPlugin.h
+           qSlicerFenestraModuleWidget.h qSlicerFenestraSession.h qSlicerFenestraSettingsPanel.h
+           qSlicerSubjectHierarchyFenestraPlugin.h
            ${widget_moc_sources}
-  UI_SRCS Resources/UI/qSlicerFenestraModuleWidget.ui ${widget_ui_sources}
+  UI_SRCS Resources/UI/qSlicerFenestraModuleWidget.ui Resources/UI/qSlicerFenestraSettingsPanel.ui
+          ${widget_ui_sources}
   TARGET_LIBRARIES vtkSlicer${MODULE_NAME}ModuleLogic
                    vtkSlicer${MODULE_NAME}ModuleMRMLDisplayableManager
                    qSlicerSubjectHierarchyModuleWidgets FenestraPortable

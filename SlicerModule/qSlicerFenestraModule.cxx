@@ -4,10 +4,14 @@
 #include "qSlicerFenestraLiveView.h"
 #include "qSlicerFenestraModuleWidget.h"
 #include "qSlicerFenestraSession.h"
+#include "qSlicerFenestraSettingsPanel.h"
 #include "qSlicerSubjectHierarchyFenestraPlugin.h"
 #include "vtkSlicerFenestraLogic.h"
 
+#include <qSlicerApplication.h>
 #include <qSlicerSubjectHierarchyPluginHandler.h>
+
+#include <ctkSettingsDialog.h>
 
 #include <vtkMRMLScene.h>
 #include <vtkMRMLThreeDViewDisplayableManagerFactory.h>
@@ -34,6 +38,12 @@ void qSlicerFenestraModule::setup() {
   m_session = new qSlicerFenestraSession(fenestraLogic(), program(), this);
   new qSlicerFenestraLiveView(fenestraLogic(), m_session); // the session owns it and the next
   new qSlicerFenestraImageClicks(fenestraLogic(), m_session);
+  if (qSlicerApplication* application = qSlicerApplication::application()) {
+    auto* panel = new qSlicerFenestraSettingsPanel; // the dialog owns it
+    application->settingsDialog()->addPanel("Fenestra", panel);
+    connect(panel, &qSlicerFenestraSettingsPanel::temporaryFolderChanged, m_session,
+            &qSlicerFenestraSession::renewFiles);
+  }
   qSlicerSubjectHierarchyPluginHandler::instance()->registerPlugin(
       new qSlicerSubjectHierarchyFenestraPlugin(fenestraLogic()));
   vtkMRMLThreeDViewDisplayableManagerFactory::GetInstance()->RegisterDisplayableManager(

@@ -23,13 +23,19 @@ qFenestraOutcome toFailure(const QString& message, const QString& details = {}) 
   return {Ended::failed, message, details};
 }
 
+/// Another program than the renderer.
+QString noImageText() {
+  return qSlicerFenestraSession::tr(
+      "The renderer ended without an image. Check the executable in the application settings.");
+}
+
 } // namespace
 
 qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
                                                const QString& program, QObject* parent)
     : QObject(parent),
       m_logic(logic),
-      m_program(program),
+      m_installedProgram(program),
       m_files(std::make_shared<Files>()),
       m_queue(program) {
   m_worker.setMaxThreadCount(1);
@@ -61,8 +67,10 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
     emit previewRefused(toUserText(message, m_files->folder.path()));
   });
   connect(&m_preview, &qFenestraPreview::ended, this, [this](const qFenestraOutcome& outcome) {
-    if (outcome.kind == Ended::failed)
-      emit previewRefused(toUserText(outcome.message, m_files->folder.path()));
+    // Without a failure, too: only another program than the renderer ends by itself.
+    emit previewRefused(outcome.kind == Ended::failed
+                            ? toUserText(outcome.message, m_files->folder.path())
+                            : noImageText());
   });
   connect(&m_queue, &qFenestraQueue::started, this, [this](int id) {
     m_renderTime.start();
@@ -98,6 +106,17 @@ qSlicerFenestraSession::~qSlicerFenestraSession() {
   m_worker.waitForDone();
 }
 
+QString qSlicerFenestraSession::program() const {
+  return qSlicerFenestraApplicationSettings::findProgram(m_installedProgram);
+}
+
+void qSlicerFenestraSession::renewFiles() {
+  m_earlierFiles << m_files;
+  m_files = std::make_shared<Files>();
+  m_preview.stop();
+  refresh();
+}
+
 void qSlicerFenestraSession::removeFolder(const QString& folder) {
   if (!folder.isEmpty())
     QDir(folder).removeRecursively();
@@ -108,7 +127,7 @@ void qSlicerFenestraSession::queryMaterials(const std::vector<SlicerExport::Segm
     return;
   m_queriedSegments = segments;
   if (!segments.empty())
-    m_materials.request(m_program, segments, m_files->folder.path());
+    m_materials.request(program(), segments, m_files->folder.path());
 }
 
 void qSlicerFenestraSession::runInWorker(const std::function<void()>& job) {
@@ -157,12 +176,12 @@ void qSlicerFenestraSession::onRenderRequested(vtkObject*, vtkObject* render) {
   node->SetRenderState(Node::Queued);
   SlicerExport::Contents contents;
   try {
-    if (!QFileInfo(m_program).isExecutable())
-      throw SlicerExport::UserError(
-          "The renderer is missing. Install the Fenestra extension again.");
+    if (!QFileInfo(program()).isExecutable())
+      throw SlicerExport::UserError("The renderer is missing. Install the Fenestra extension "
+                                    "again, or check the executable in the application settings.");
     contents = m_logic->Snapshot(node, m_files->folder.path().toStdString());
   } catch (const SlicerExport::UserError& error) {
-    return endRender(id, toFailure(QString::fromUtf8(error.what()), m_program));
+    return endRender(id, toFailure(QString::fromUtf8(error.what()), program()));
   }
   m_preview.stop();
   node->SetFlags(
@@ -194,6 +213,7 @@ void qSlicerFenestraSession::submit(int id, const SlicerExport::Contents& conten
     } catch (const SlicerExport::UserError& error) {
       return endRender(id, toFailure(QString::fromUtf8(error.what())));
     }
+    m_queue.setProgram(program());
     m_queue.add({id, makeArguments(render.node, scene, withSurface), render.folder});
   });
 }
@@ -209,7 +229,8 @@ QStringList qSlicerFenestraSession::makeArguments(Node* render, const QString& s
   QStringList all = render->IsTurntable() ? QStringList{"turntable", scene} : QStringList{scene};
   for (const std::string& argument : vtkSlicerFenestraLogic::GetArguments(render, withSurface))
     all << QString::fromStdString(argument);
-  return all;
+  return all + qSlicerFenestraApplicationSettings::makeDeviceArguments() +
+         qSlicerFenestraApplicationSettings::makeThreadArguments();
 }
 
 bool qSlicerFenestraSession::canResume(Node* turntable) const {
@@ -224,6 +245,7 @@ void qSlicerFenestraSession::resume(Node* turntable) {
   turntable->SetRenderState(Node::Queued);
   const QString folder = m_results.findFolder(turntable);
   m_renders[id] = {turntable, m_files, folder};
+  m_queue.setProgram(program());
   m_queue.add({id, makeArguments(turntable, folder + "/scene.mrml", false), folder});
 }
 
@@ -244,6 +266,7 @@ void qSlicerFenestraSession::closeScene() {
     m_queue.stop(id); // discards the results of the current render
   }
   m_files = std::make_shared<Files>(); // the old files are removed with their last process
+  m_earlierFiles.clear();
   m_previewKey.clear();
   m_previewFolder.clear();
   m_focusKey.clear();
@@ -261,7 +284,7 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
       isTurntable ? !vtkSlicerFenestraLogic::GetFrameFiles(folder.toStdString()).empty()
                   : outcome.kind != Ended::failed && QFileInfo::exists(folder + "/radiance.nrrd");
   if (!hasFiles)
-    return endRender(id, outcome);
+    return endRender(id, outcome.kind == Ended::done ? toFailure(noImageText()) : outcome);
   runInWorker([this, id, outcome, folder] {
     const auto result = std::make_shared<FenestraResult>();
     QString message;

@@ -7,6 +7,7 @@
 #include "qFenestraMaterials.h"
 #include "qFenestraPreview.h"
 #include "qFenestraQueue.h"
+#include "qSlicerFenestraApplicationSettings.h"
 #include "qSlicerFenestraModuleExport.h"
 #include "qSlicerFenestraResults.h"
 
@@ -39,6 +40,7 @@ class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraSession : public QObject
   QVTK_OBJECT
 
 public:
+  /// `program`: the installed renderer; the application settings may name another one.
   qSlicerFenestraSession(vtkSlicerFenestraLogic* logic, const QString& program,
                          QObject* parent = nullptr);
   ~qSlicerFenestraSession() override;
@@ -84,6 +86,9 @@ public slots:
   /// Updates the preview. Call when settings, camera, volume, segments or transfer function may
   /// have changed.
   void refresh();
+  /// Uses the folder for temporary files that the application settings name now. Files of earlier
+  /// renders stay where they are.
+  void renewFiles();
 
 signals:
   void materialsReceived(const qFenestraMaterials& materials);
@@ -116,7 +121,7 @@ private:
   static constexpr const char* folderPrefix = "fenestra-slicer-";
   /// Files of one scene, for the worker thread.
   struct Files {
-    qFenestraFolder folder{QDir::tempPath(), folderPrefix};
+    qFenestraFolder folder{qSlicerFenestraApplicationSettings::findTemporaryFolder(), folderPrefix};
     SlicerExport::Writer writer{folder.path().toStdString()};
   };
   struct Render {
@@ -126,6 +131,7 @@ private:
     bool stopped = false;
   };
 
+  QString program() const;                         ///< of the next process
   static void removeFolder(const QString& folder); ///< empty: none
   /// The renderer's message without file names in this session's folder.
   static QString toUserText(QString message, const QString& folder);
@@ -162,8 +168,9 @@ private:
                 const fenestra::core::BoxCorners& corners, const QString& problem);
 
   vtkSlicerFenestraLogic* m_logic;
-  QString m_program;
-  std::shared_ptr<Files> m_files; ///< of the open scene
+  QString m_installedProgram;
+  std::shared_ptr<Files> m_files;               ///< of the open scene
+  QList<std::shared_ptr<Files>> m_earlierFiles; ///< of its renders before renewFiles
   /// Folder of the sample, once generated. It outlives the scene: it holds no patient data, and
   /// saved scenes may refer to it.
   std::unique_ptr<qFenestraFolder> m_sample;

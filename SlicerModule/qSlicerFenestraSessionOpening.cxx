@@ -220,7 +220,8 @@ void qSlicerFenestraSession::startFocus(const SlicerExport::Contents& contents,
                     const QString problem = toUserText(outcome.message, files->folder.path());
                     end({}, problem.isEmpty() ? tr("The focus could not be prepared.") : problem);
                   });
-          child->run(m_program, arguments, folder);
+          arguments << qSlicerFenestraApplicationSettings::makeThreadArguments();
+          child->run(program(), arguments, folder);
         });
 }
 

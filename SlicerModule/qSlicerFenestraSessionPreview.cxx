@@ -100,7 +100,9 @@ void qSlicerFenestraSession::startPreview(const SlicerExport::Contents& contents
     const QString folder = QFileInfo(scene).absolutePath();
     if (isRendering() || files != m_files) // or the scene was closed during the writing
       return removeFolder(folder);
-    m_preview.start(m_program, arguments, folder, files);
+    arguments << qSlicerFenestraApplicationSettings::makeDeviceArguments()
+              << qSlicerFenestraApplicationSettings::makeThreadArguments();
+    m_preview.start(program(), arguments, folder, files);
     removeFolder(m_previewFolder);
     m_previewFolder = folder;
   });

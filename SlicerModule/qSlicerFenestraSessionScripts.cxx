@@ -62,7 +62,8 @@ void qSlicerFenestraSession::makeSample(
   if (m_sampleTimer.isActive())
     return;
   if (!m_sample)
-    m_sample = std::make_unique<qFenestraFolder>(QDir::tempPath(), folderPrefix);
+    m_sample = std::make_unique<qFenestraFolder>(
+        qSlicerFenestraApplicationSettings::findTemporaryFolder(), folderPrefix);
   const QString folder = m_sample->filePath("knee");
   QFile::remove(folder + "/knee.mrml"); // of an earlier sample
   auto* child = new qFenestraProgram(this);
@@ -78,7 +79,7 @@ void qSlicerFenestraSession::makeSample(
             then({}, outcome.message + '\n' + outcome.details);
           });
   // Coarser than the default, as a clinical scan is, so that it takes half as long.
-  child->run(m_program, {"phantom", "knee", "--size", "240x276x96", "--quiet", "--output", folder},
+  child->run(program(), {"phantom", "knee", "--size", "240x276x96", "--quiet", "--output", folder},
              m_sample->path());
   m_sampleTime.start();
   m_sampleTimer.start();

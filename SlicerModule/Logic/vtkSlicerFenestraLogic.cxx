@@ -311,7 +311,7 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
   const std::map<std::string, std::string> flags = render->GetFlags();
   const auto denoise = flags.find("denoise");
   const bool isDenoised = denoise == flags.end() || denoise->second != "off";
-  std::vector<std::string> arguments = {"--stats=stats.json", "--device=auto"};
+  std::vector<std::string> arguments = {"--stats=stats.json"};
   if (render->IsTurntable())
     arguments.push_back("--output=frame.png");
   else // slow compression of further layers would delay a stop

@@ -39,7 +39,8 @@ qFenestraProgram::qFenestraProgram(QObject* parent) : QProcess(parent) {
       return;
     const qFenestraOutcome outcome = {
         qFenestraOutcome::Kind::failed,
-        tr("The renderer could not be started. Install the Fenestra extension again."),
+        tr("The renderer could not be started. Install the Fenestra extension again, or check the "
+           "executable in the application settings."),
         QStringLiteral("%1: %2").arg(program(), errorString())};
     // Queued until after start(), since a receiver may start the program again.
     QMetaObject::invokeMethod(

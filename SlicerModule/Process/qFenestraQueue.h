@@ -18,6 +18,8 @@ class qFenestraQueue : public QObject {
 public:
   /// `program`: the renderer's path.
   explicit qFenestraQueue(const QString& program, QObject* parent = nullptr);
+  /// Starts another program from the next render on.
+  void setProgram(const QString& program) { m_program = program; }
 
   /// Starts the render, or queues it.
   void add(const qFenestraJob& job);
