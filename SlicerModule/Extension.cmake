@@ -60,6 +60,12 @@ slicerMacroBuildLoadableModule(
 set_property(GLOBAL APPEND PROPERTY Slicer_TARGETS
   FenestraPortable FenestraProcess FenestraScene FenestraView fenestra_sanitizers fenestra_warnings)
 
+# Sample data and self test: Slicer's modules for them are in Python.
+if(Slicer_USE_PYTHONQT)
+  slicerMacroBuildScriptedModule(NAME FenestraSelfTest SCRIPTS FenestraSelfTest.py
+    RESOURCES Resources/Icons/preset-knee-cartilage.png)
+endif()
+
 include(Package.cmake)
 if(BUILD_TESTING)
   add_subdirectory(Testing)
