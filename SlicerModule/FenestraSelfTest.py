@@ -1,7 +1,8 @@
 """Fenestra's part in Slicer's Python modules: the sample knee in Sample Data, and a self test."""
 
 import slicer
-from slicer.ScriptedLoadableModule import ScriptedLoadableModule, ScriptedLoadableModuleTest
+from slicer.ScriptedLoadableModule import (ScriptedLoadableModule, ScriptedLoadableModuleTest,
+                                           ScriptedLoadableModuleWidget)
 
 
 class FenestraSelfTest(ScriptedLoadableModule):
@@ -25,6 +26,14 @@ class FenestraSelfTest(ScriptedLoadableModule):
         SampleData.SampleDataLogic.registerCustomSampleDataSource(
             category="Fenestra", sampleName="Synthetic knee", uris="", fileNames="knee.mrml",
             thumbnailFileName=self.resourcePath("Icons/preset-knee-cartilage.png"), customDownloader=loadSample)
+
+
+class FenestraSelfTestWidget(ScriptedLoadableModuleWidget):
+    """Only the button Reload and Test of its base class."""
+
+    def setup(self):
+        ScriptedLoadableModuleWidget.setup(self)
+        self.layout.addStretch(1)
 
 
 def loadSample(source=None):
