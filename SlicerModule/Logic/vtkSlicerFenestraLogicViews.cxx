@@ -26,15 +26,15 @@ using Node = vtkMRMLFenestraRenderNode;
 
 constexpr int ResultLayout = 5617; // larger than the numbers of Slicer's own layouts
 constexpr const char* ResultLayoutXml =
+    "<layout type=\"vertical\" split=\"true\"><item splitSize=\"680\">"
     "<layout type=\"horizontal\" split=\"true\">"
     "<item splitSize=\"500\"><view class=\"vtkMRMLSliceNode\" singletontag=\"Fenestra\">"
     "<property name=\"orientation\" action=\"default\">Axial</property>"
     "<property name=\"viewlabel\" action=\"default\">F</property>"
     "<property name=\"viewcolor\" action=\"default\">#6FB1C8</property></view></item>"
-    "<item splitSize=\"500\"><layout type=\"vertical\" split=\"true\">"
-    "<item splitSize=\"700\"><view class=\"vtkMRMLViewNode\" singletontag=\"1\">"
-    "<property name=\"viewlabel\" action=\"default\">1</property></view></item>"
-    "<item splitSize=\"300\"><layout type=\"horizontal\">"
+    "<item splitSize=\"500\"><view class=\"vtkMRMLViewNode\" singletontag=\"1\">"
+    "<property name=\"viewlabel\" action=\"default\">1</property></view></item></layout></item>"
+    "<item splitSize=\"320\"><layout type=\"horizontal\">"
     "<item><view class=\"vtkMRMLSliceNode\" singletontag=\"Red\">"
     "<property name=\"orientation\" action=\"default\">Axial</property>"
     "<property name=\"viewlabel\" action=\"default\">R</property>"
@@ -47,7 +47,7 @@ constexpr const char* ResultLayoutXml =
     "<property name=\"orientation\" action=\"default\">Sagittal</property>"
     "<property name=\"viewlabel\" action=\"default\">Y</property>"
     "<property name=\"viewcolor\" action=\"default\">#EDD54C</property></view></item>"
-    "</layout></item></layout></item></layout>";
+    "</layout></item></layout>";
 
 /// Shows a frame in the slice view as the camera saw it. The image's j axis points down and k away
 /// from the camera; the view's y axis points up and z to the viewer.

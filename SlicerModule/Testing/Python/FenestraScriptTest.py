@@ -111,13 +111,17 @@ class FenestraScriptTest(unittest.TestCase):
         manager = view.displayableManagerByClassName("vtkMRMLFenestraOpeningDisplayableManager")
         process_events()
         opening = self.logic.ShowPhotorealistic(self.settings)
-        self.assertTrue(wait_for(manager.IsImageShown))
         renderer = view.renderWindow().GetRenderers().GetFirstRenderer()
-        view.forceRender()
-        width, height = renderer.GetSize()
         cells, depths = vtk.vtkCellPicker(), vtk.vtkWorldPointPicker()
-        self.assertTrue(cells.Pick(width // 2, height // 2, 0, renderer))
-        depths.Pick(width // 2, height // 2, 0, renderer)
+
+        def pick():
+            """False while the view still gets its size, after which there is another image."""
+            view.forceRender()
+            width, height = renderer.GetSize()
+            depths.Pick(width // 2, height // 2, 0, renderer)
+            return manager.IsImageShown() and cells.Pick(width // 2, height // 2, 0, renderer)
+
+        self.assertTrue(wait_for(pick))
         apart = vtk.vtkMath.Distance2BetweenPoints(cells.GetPickPosition(), depths.GetPickPosition()) ** 0.5
         self.assertLess(apart, 2.0, (cells.GetPickPosition(), depths.GetPickPosition()))
         renderer.GetActiveCamera().Azimuth(30)
