@@ -144,6 +144,7 @@ bool qSlicerFenestraTour::restView() {
   if (!click("PhotorealisticButton") || !waitFor([&] { return manager->IsImageShown(); }))
     return false;
   m_measurements["firstImageMs"] = static_cast<int>(watch.elapsed());
+  findView()->forceRender();
   takeScreenshot("21-view-resting");
   wait(20000);
   takeScreenshot("22-view-photorealistic");
