@@ -10,13 +10,20 @@
 
 #include <vtkCommand.h>
 
+#include <QTimer>
+
 qSlicerFenestraImageClicks::qSlicerFenestraImageClicks(vtkSlicerFenestraLogic* logic,
                                                        QObject* parent)
     : QObject(parent), m_logic(logic) {
-  qvtkConnect(logic, vtkSlicerFenestraLogic::ViewChangedEvent, this, SLOT(followView()));
+  qvtkConnect(logic, vtkSlicerFenestraLogic::ViewChangedEvent, this, SLOT(onViewChanged()));
+}
+
+void qSlicerFenestraImageClicks::onViewChanged() {
+  QTimer::singleShot(0, this, [this] { followView(); }); // after the layout has changed
 }
 
 void qSlicerFenestraImageClicks::followView() {
+  m_last.reset(); // maybe of another image
   const qSlicerApplication* application = qSlicerApplication::application();
   qSlicerLayoutManager* layout = application ? application->layoutManager() : nullptr;
   qMRMLSliceWidget* widget = layout ? layout->sliceWidget("Fenestra") : nullptr;
@@ -25,29 +32,46 @@ void qSlicerFenestraImageClicks::followView() {
     return;
   // After Slicer's own observers, which take the crosshair to the plane of the image.
   constexpr float priority = -1.0F;
-  qvtkReconnect(m_interactor, interactor, vtkCommand::LeftButtonPressEvent, this, SLOT(onClick()),
+  qvtkReconnect(m_interactor, interactor, vtkCommand::LeftButtonPressEvent, this, SLOT(onPress()),
                 priority);
+  qvtkReconnect(m_interactor, interactor, vtkCommand::LeftButtonReleaseEvent, this,
+                SLOT(onRelease()), priority);
   qvtkReconnect(m_interactor, interactor, vtkCommand::MouseMoveEvent, this, SLOT(onMove()),
                 priority);
   m_interactor = interactor;
 }
 
-void qSlicerFenestraImageClicks::onClick() {
+QPoint qSlicerFenestraImageClicks::mousePosition() const {
+  const int* const position = m_interactor->GetEventPosition();
+  return {position[0], position[1]};
+}
+
+void qSlicerFenestraImageClicks::onPress() {
+  m_pressed.reset();
   if (!m_interactor->GetShiftKey() && !m_interactor->GetControlKey())
-    jump();
+    m_pressed = mousePosition();
+}
+
+/// A drag, of a markup's point for example, is no click.
+void qSlicerFenestraImageClicks::onRelease() {
+  if (m_pressed && m_pressed == mousePosition())
+    jump(*m_pressed);
+  m_pressed.reset();
 }
 
 void qSlicerFenestraImageClicks::onMove() {
-  if (m_interactor->GetShiftKey())
-    jump();
+  if (m_interactor->GetShiftKey() && !jump(mousePosition()) && m_last)
+    jump(*m_last);
 }
 
-void qSlicerFenestraImageClicks::jump() {
+bool qSlicerFenestraImageClicks::jump(const QPoint& to) {
   vtkMRMLScene* scene = m_logic->GetMRMLScene();
   auto* interaction = vtkMRMLInteractionNode::SafeDownCast(
       scene ? scene->GetFirstNodeByClass("vtkMRMLInteractionNode") : nullptr);
-  if (interaction && interaction->GetCurrentInteractionMode() == vtkMRMLInteractionNode::Place)
-    return;
-  const int* const position = m_interactor->GetEventPosition();
-  m_logic->JumpSlicesToViewPoint(position[0], position[1]);
+  const bool isPlacing =
+      interaction && interaction->GetCurrentInteractionMode() == vtkMRMLInteractionNode::Place;
+  if (isPlacing || !m_logic->JumpSlicesToViewPoint(to.x(), to.y()))
+    return false;
+  m_last = to;
+  return true;
 }

@@ -38,7 +38,7 @@ public:
   bool hasVolume() const;
   void setStatus(const QString& message, const QString& details = {});
   void clearStatus();
-  void setLoading(bool isLoading);
+  void setLoading(bool loading);
   void showPreviewImage(const QImage& image, const qFenestraPreviewImage& info);
   void showMeasures(Node* render);
   QString toUserText(Node* render, qFenestraOutcome::Kind kind) const;
@@ -46,6 +46,7 @@ public:
   QPointer<qSlicerFenestraSession> session; ///< owned by the module, which may end earlier
   vtkWeakPointer<vtkRenderWindow> window;   ///< of the 3D view whose size is followed
   bool sceneIsNew = false;                  ///< scene closed or loaded, but not shown yet
+  bool isLoading = false;                   ///< generating the sample
   QString samplesAndNoise;                  ///< samples and noise of the current render, as text
   QElapsedTimer progressAge;                ///< time since progress was last shown
 };
@@ -140,7 +141,8 @@ void qSlicerFenestraModuleWidget::connectSession() {
   connect(d->session, &Session::progressed, this,
           [this](Node*, double fraction, double seconds) { onProgress(fraction, seconds); });
   connect(d->session, &Session::sampleProgressed, this, [d](double seconds) {
-    d->setStatus(tr("Generating the synthetic knee: %1").arg(formatDuration(seconds)));
+    if (d->isLoading) // else a script's
+      d->setStatus(tr("Generating the synthetic knee: %1").arg(formatDuration(seconds)));
   });
   connect(d->session, &Session::ended, this, &qSlicerFenestraModuleWidget::onEnded);
 }
@@ -425,19 +427,23 @@ void qSlicerFenestraModuleWidget::loadSample() {
   Q_D(qSlicerFenestraModuleWidget);
   d->setLoading(true);
   const QPointer<qSlicerFenestraModuleWidget> self = this; // may end before the session
-  d->session->makeSample([self, d](const QString& scene, const QString& message) {
-    if (!self)
-      return;
+  const bool isStarted =
+      d->session->makeSample([self, d](const QString& scene, const QString& message) {
+        if (!self)
+          return;
+        d->setLoading(false);
+        if (scene.isEmpty())
+          return d->setStatus(tr("The sample could not be generated."), message);
+        d->session->loadSample(scene);
+        d->setStatus(tr("The synthetic knee is loaded. Choose a segment as focus."));
+      });
+  if (!isStarted)
     d->setLoading(false);
-    if (scene.isEmpty())
-      return d->setStatus(tr("The sample could not be generated."), message);
-    d->session->loadSample(scene);
-    d->setStatus(tr("The synthetic knee is loaded. Choose a segment as focus."));
-  });
 }
 
 /// Shows that the sample is being generated, which reports no progress.
-void qSlicerFenestraModuleWidgetPrivate::setLoading(bool isLoading) {
+void qSlicerFenestraModuleWidgetPrivate::setLoading(bool loading) {
+  isLoading = loading;
   Settings->setSampleEnabled(!isLoading);
   ProgressBar->setMaximum(isLoading ? 0 : 1000); // 0: busy
   ProgressBar->setVisible(isLoading);

@@ -70,11 +70,12 @@ public:
   /// preview(); null: ends that.
   void previewView(vtkMRMLFenestraRenderNode* settings, const Flags& view);
   /// Ends the render of the current preview, whose view changes. The next change continues.
-  void pausePreview() { m_preview.pause(); }
+  void pausePreview();
 
   /// Generates the synthetic sample knee, then calls `then` with the path of its scene or with an
-  /// error message. `sampleProgressed` reports the time until then. Ignored while one is generated.
-  void makeSample(const std::function<void(const QString& scene, const QString& failure)>& then);
+  /// error message. `sampleProgressed` reports the time until then. Returns false, and does
+  /// nothing, while one is generated.
+  bool makeSample(const std::function<void(const QString& scene, const QString& failure)>& then);
   /// Adds the generated sample to the scene, and shows it.
   void loadSample(const QString& scene);
 

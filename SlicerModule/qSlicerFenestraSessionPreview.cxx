@@ -58,6 +58,11 @@ void qSlicerFenestraSession::previewView(Node* settings, const Flags& view) {
   preview(m_previewed);
 }
 
+void qSlicerFenestraSession::pausePreview() {
+  m_refreshTimer.stop(); // the request of the former view
+  m_preview.pause();
+}
+
 void qSlicerFenestraSession::refresh() {
   if (previewed() && !m_refreshTimer.isActive())
     m_refreshTimer.start();

@@ -57,10 +57,10 @@ void qSlicerFenestraSession::onOpeningWait() {
   loop.exec(QEventLoop::ExcludeUserInputEvents);
 }
 
-void qSlicerFenestraSession::makeSample(
+bool qSlicerFenestraSession::makeSample(
     const std::function<void(const QString& scene, const QString& failure)>& then) {
   if (m_sampleTimer.isActive())
-    return;
+    return false;
   if (!m_sample)
     m_sample = std::make_unique<qFenestraFolder>(
         qSlicerFenestraApplicationSettings::findTemporaryFolder(), folderPrefix);
@@ -84,6 +84,7 @@ void qSlicerFenestraSession::makeSample(
   m_sampleTime.start();
   m_sampleTimer.start();
   emit sampleProgressed(0.0);
+  return true;
 }
 
 void qSlicerFenestraSession::loadSample(const QString& scene) {
@@ -96,15 +97,15 @@ void qSlicerFenestraSession::loadSample(const QString& scene) {
 
 /// Processes events, except user input, until the sample is loaded.
 void qSlicerFenestraSession::onSampleRequested() {
-  if (m_sampleTimer.isActive()) {
-    qCritical("Fenestra: the sample is already being generated");
-    return;
-  }
   QEventLoop loop;
-  makeSample([this, &loop](const QString& scene, const QString&) {
+  connect(this, &QObject::destroyed, &loop, &QEventLoop::quit);
+  const bool isStarted = makeSample([this, &loop](const QString& scene, const QString&) {
     if (!scene.isEmpty())
       loadSample(scene);
     loop.quit();
   });
-  loop.exec(QEventLoop::ExcludeUserInputEvents);
+  if (isStarted)
+    loop.exec(QEventLoop::ExcludeUserInputEvents);
+  else
+    qCritical("Fenestra: the sample is already being generated");
 }

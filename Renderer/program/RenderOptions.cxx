@@ -145,7 +145,8 @@ void resolveLayers(const OptionValues& values, RenderOptions& options) {
 /// Resolves which images are denoised, and which noise stops the render.
 void resolveDenoising(const OptionValues& values, RenderOptions& options) {
   const bool hasDisplay = std::ranges::any_of(options.outputs, isDisplayFile);
-  const bool hasLayers = options.hasFilterLayer("denoised") || options.hasFilterLayer("expected");
+  const bool hasLayers = options.hasFilterLayer("denoised") || options.hasFilterLayer("expected") ||
+                         options.hasFilterLayer("depth50");
   options.scene.features = options.denoise != Denoise::off && (hasDisplay || hasLayers);
   if (options.denoise != Denoise::on && !values.has("layers")) // only if named
     options.layers.erase("depth50");
@@ -154,7 +155,7 @@ void resolveDenoising(const OptionValues& values, RenderOptions& options) {
         "--layers: depth50 requires denoising; add --denoise on, or write a .png, too");
   if (options.denoise == Denoise::on && !hasLayers)
     throw usageError(
-        "--denoise: on requires the layer denoised or expected; add one to --layers, or "
+        "--denoise: on requires the layer denoised, expected or depth50; add one to --layers, or "
         "omit --denoise");
   if (options.noiseTarget == NoiseTarget::denoised && !options.scene.features)
     throw usageError("--noise-target: denoised requires a denoised image; write a .png, or add "

@@ -131,7 +131,7 @@ ServeInput::ServeInput(const OptionValues& start, const Input& input, RenderMoni
 
 ServeChanges ServeInput::next() {
   std::unique_lock lock(m_mutex);
-  m_changed.wait(lock, [&] { return !m_pending.empty(); });
+  m_changed.wait(lock, [&] { return !m_pending.empty() && !m_isPaused; });
   m_monitor.stop = false;
   return std::exchange(m_pending, {});
 }
@@ -168,7 +168,8 @@ void ServeInput::handleLine(const std::string& line) {
     change.options = parseJson(line, "a line");
     change.id = readId(change.options);
     const std::lock_guard lock(m_mutex);
-    if (isPause(change.options)) {
+    m_isPaused = isPause(change.options);
+    if (m_isPaused) {
       m_monitor.stop = true;
       return;
     }

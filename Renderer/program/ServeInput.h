@@ -63,6 +63,7 @@ private:
   std::condition_variable m_changed;
   OptionValues m_requested; ///< option values after all changes
   ServeChanges m_pending;   ///< not yet returned by next()
+  bool m_isPaused = false;  ///< until the next change
 };
 
 } // namespace fenestra::core

@@ -57,8 +57,8 @@ public:
 
   /// Requests to the renderer, which observes them: the module's session. The call data of the
   /// first two is the render's node. RenderRequestedEvent: set the node's state, render, and call
-  /// its EndRender. RenderWaitEvent: return when the render has ended. ViewChangedEvent: call
-  /// AlignView later. OpeningChangedEvent: GetOpening may return another node. OpeningWaitEvent:
+  /// its EndRender. RenderWaitEvent: return when the render has ended. ViewChangedEvent: the
+  /// view of images has appeared or changed; call AlignView later. OpeningChangedEvent: GetOpening may return another node. OpeningWaitEvent:
   /// return when GetOpening shows what it was asked for, or cannot. SampleRequestedEvent: load the
   /// sample.
   enum {
@@ -192,6 +192,7 @@ protected:
   void SetMRMLSceneInternal(vtkMRMLScene* scene) override;
   /// Registers the module's layout, which the scene may have been saved with.
   void OnMRMLSceneStartImport() override;
+  void OnMRMLSceneEndImport() override;
   void OnMRMLSceneNodeAdded(vtkMRMLNode* node) override;
   void OnMRMLSceneNodeRemoved(vtkMRMLNode* node) override;
   /// A view that the layout has just created changes its size, and sets its plane to its slider's
@@ -200,7 +201,8 @@ protected:
 
 private:
   vtkMRMLFenestraOpeningNode* AddOpening(vtkMRMLFenestraRenderNode* settings);
-  vtkMRMLFenestraOpeningNode* WaitForOpening(const char* caller);
+  vtkMRMLFenestraOpeningNode* WaitForCut();
+  vtkMRMLFenestraOpeningNode* WaitForImage();
   vtkMRMLFenestraRenderNode* Start(vtkMRMLFenestraRenderNode* settings, bool turntable, bool wait);
   vtkMRMLSliceLogic* GetPictureSliceLogic();
   SlicerExport::Matrix MoveOutsideVolume(vtkMRMLFenestraRenderNode* render,

@@ -69,19 +69,26 @@ Opening* vtkSlicerFenestraLogic::OpenView(Node* settings, bool wait) {
   if (!opening->GetProblem().empty())
     opening->SetVisible(false); // so that opening it again tries again
   opening->SetVisible(true);
-  return wait ? this->WaitForOpening("OpenView") : opening;
+  return wait ? this->WaitForCut() : opening;
 }
 
-/// The opened view, once it shows what it was asked for; null: it cannot, and the log says why.
-Opening* vtkSlicerFenestraLogic::WaitForOpening(const char* caller) {
+/// The opened view, once it is cut; null: it cannot be, and the log says why.
+Opening* vtkSlicerFenestraLogic::WaitForCut() {
   this->InvokeEvent(OpeningWaitEvent);
   Opening* opening = this->GetOpening();
-  if (!opening || (opening->GetVisible() && !opening->GetProblem().empty()))
-    vtkErrorMacro(<< caller << ": the view is not cut. " << (opening ? opening->GetProblem() : ""));
-  else if (opening->GetPhotorealistic() && !opening->HasImage())
-    vtkErrorMacro(<< caller << ": no 3D view shows an image");
-  else
+  if (opening && opening->GetProblem().empty())
     return opening;
+  vtkErrorMacro("OpenView: the view is not cut. " << (opening ? opening->GetProblem() : ""));
+  return nullptr;
+}
+
+/// The opened view, once it has an image; null: it has none, and the log says so.
+Opening* vtkSlicerFenestraLogic::WaitForImage() {
+  this->InvokeEvent(OpeningWaitEvent);
+  Opening* opening = this->GetOpening();
+  if (opening && opening->HasImage())
+    return opening;
+  vtkErrorMacro("ShowPhotorealistic: no 3D view shows an image");
   return nullptr;
 }
 
@@ -108,7 +115,7 @@ Opening* vtkSlicerFenestraLogic::ShowPhotorealistic(Node* settings, bool wait) {
   if (wait)
     opening->SetPhotorealistic(false); // drops an image of other settings
   opening->SetPhotorealistic(true);
-  return wait ? this->WaitForOpening("ShowPhotorealistic") : opening;
+  return wait ? this->WaitForImage() : opening;
 }
 
 void vtkSlicerFenestraLogic::HidePhotorealistic() {

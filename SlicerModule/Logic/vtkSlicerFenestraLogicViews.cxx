@@ -114,6 +114,11 @@ void vtkSlicerFenestraLogic::OnMRMLSceneStartImport() {
     layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
 }
 
+/// The scene may have been saved with the layout.
+void vtkSlicerFenestraLogic::OnMRMLSceneEndImport() {
+  this->InvokeEvent(ViewChangedEvent);
+}
+
 void vtkSlicerFenestraLogic::ShowNewestVolume() {
   vtkMRMLApplicationLogic* application = this->GetMRMLApplicationLogic();
   vtkMRMLSelectionNode* selection = application ? application->GetSelectionNode() : nullptr;
@@ -164,6 +169,7 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
   this->AlignView();
   vtkUnObserveMRMLNodeMacro(slice);
   vtkObserveMRMLNodeMacro(slice);
+  this->InvokeEvent(ViewChangedEvent);
 }
 
 void vtkSlicerFenestraLogic::AlignView() {

@@ -60,6 +60,7 @@ void qFenestraPreview::change(const QJsonObject& flags) {
 void qFenestraPreview::pause() {
   if (!running())
     return;
+  m_delay.stop(); // what is not sent yet goes with the next change
   m_child->write(QByteArrayLiteral("{\"pause\": true}\n"));
   m_isWaiting = false; // the last change may get no reply
 }

@@ -52,11 +52,11 @@ TEST_F(FilterCommand, OnAddsChannelsToTheRawOnes) {
   const Image image = readImage(folder / "a.exr");
   for (const char* name :
        {"R", "A", "Z", "denoised.R", "denoised.G", "denoised.B", "denoised.A", "denoised.error.R",
-        "expected.albedo.R", "expected.normal.X", "expected.Z"})
+        "expected.albedo.R", "expected.normal.X", "expected.Z", "depth50"})
     EXPECT_TRUE(image.find(name)) << name;
   EXPECT_NE(image.header.at("filter").find("R, G, B and A are not denoised"), std::string::npos);
-  EXPECT_EQ(listFiles(folder.path()),
-            (std::set<std::string>{"a.exr", "a.nrrd", "a-Z.nrrd", "a-denoised.nrrd"}));
+  EXPECT_EQ(listFiles(folder.path()), (std::set<std::string>{"a.exr", "a.nrrd", "a-Z.nrrd",
+                                                             "a-denoised.nrrd", "a-depth50.nrrd"}));
   EXPECT_EQ(*readImage(folder / "a-denoised.nrrd").find("R"), *image.find("denoised.R"));
   EXPECT_EQ(*readImage(folder / "a.nrrd").find("R"), *image.find("R"));
 }

@@ -56,6 +56,19 @@ Point pixelCenter(const SlicerExport::Image& image, double column, double row) {
   return point;
 }
 
+/// Where the ray of a pixel, counted from the middle to the right and upward, meets y = 8.
+Point findFacePoint(bool isOrthographic, double right, double up) {
+  const double distance = std::hypot(40.0, 100.0); // of the target
+  const double pitch =
+      (isOrthographic ? 15.0 : distance * std::tan(10.0 * std::acos(-1.0) / 180.0)) / 15.5;
+  // The axis is (-40, -100, 0) / distance; right of it, seen upright, is (-100, 40, 0) / distance.
+  const double x = -100.0 / distance * pitch * right, y = 40.0 / distance * pitch * right;
+  if (isOrthographic)
+    return {3.0 + x - 0.4 * y, 8.0, 5.0 + pitch * up};
+  const double t = 100.0 / (100.0 - y);
+  return {43.0 + t * (-40.0 + x), 8.0, 5.0 + t * pitch * up};
+}
+
 TEST(SlicerImagePoint, PixelsOfAFaceLieOnIt) {
   for (const char* options :
        {"--projection orthographic --scale 15", "--projection perspective --angle 20"})
@@ -73,11 +86,9 @@ TEST(SlicerImagePoint, PixelsOfAFaceLieOnIt) {
           const Point point =
               SlicerExport::findImagePoint(*camera, pixelCenter(depth, column, row),
                                            static_cast<double>(values[41 * row + column]));
-          EXPECT_NEAR(point[1], 8.0, 0.6) << column << " " << row;
-          if (column == 20 && row == 15) {
-            EXPECT_NEAR(point[0], 3.0, 0.6);
-            EXPECT_NEAR(point[2], 5.0, 0.6);
-          }
+          const Point expected = findFacePoint(camera->isOrthographic, column - 20, 15 - row);
+          for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_NEAR(point[i], expected[i], 0.6) << column << " " << row << " " << i;
         }
       EXPECT_FALSE(std::isfinite(values[0])); // beside the cube
     }

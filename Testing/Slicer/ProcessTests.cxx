@@ -9,6 +9,7 @@
 #include <QCoreApplication>
 #include <QElapsedTimer>
 #include <QEventLoop>
+#include <QFile>
 #include <QFileInfo>
 #include <QTimer>
 #include <gtest/gtest.h>
@@ -330,6 +331,31 @@ TEST_F(SlicerPreview, ImagesArriveDuringFastChanges) {
   drag.start(1);
   EXPECT_TRUE(waitFor([&] { return images.size() > 2; })) << refusals.join(" ").toStdString();
   EXPECT_GT(changes, 3);
+}
+
+/// A pause is sent at once, and no reply is waited for afterwards.
+TEST_F(SlicerPreview, PausePrecedesChangesThatWait) {
+  const QString log = path() + "/lines.txt", silent = path() + "/silent.sh";
+  QFile script(silent);
+  ASSERT_TRUE(script.open(QIODevice::WriteOnly));
+  script.write("#!/bin/sh\nexec cat > lines.txt\n");
+  script.close();
+  ASSERT_TRUE(script.setPermissions(QFile::ReadOwner | QFile::ExeOwner));
+  const auto lines = [&log] {
+    QFile file(log);
+    return file.open(QIODevice::ReadOnly) ? file.readAll().split('\n') : QList<QByteArray>();
+  };
+  preview.start(silent, {}, path());
+  ASSERT_TRUE(waitFor([this] { return preview.running(); }));
+  preview.change({{"view", "left"}});
+  ASSERT_TRUE(waitFor([&] { return lines().size() == 2; }));
+  preview.change({{"view", "right"}}); // waits for the reply
+  preview.pause();
+  preview.change({{"samples", 4}});
+  ASSERT_TRUE(waitFor([&] { return lines().size() == 4; }));
+  EXPECT_TRUE(lines()[0].contains("left"));
+  EXPECT_TRUE(lines()[1].contains("pause"));
+  EXPECT_TRUE(lines()[2].contains("right") && lines()[2].contains("samples"));
 }
 
 TEST_F(SlicerPreview, ChangesContinueAfterAPause) {

@@ -104,7 +104,7 @@ class FenestraExtensionTest(unittest.TestCase):
             start = time.monotonic()
             with Log() as log:
                 self.assertTrue(self.choose("Executable", path).startswith("Not used: "), path)
-            self.assertLess(time.monotonic() - start, 20.0)
+            self.assertLess(time.monotonic() - start, 300.0)
             self.assertEqual(self.panel.executable, "")
             self.assertFalse(qt.QSettings().value("Fenestra/Executable"))
         self.assertIn("endless is not the renderer", "\n".join(log.lines()))

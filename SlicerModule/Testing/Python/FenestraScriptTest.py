@@ -150,18 +150,23 @@ class FenestraScriptTest(unittest.TestCase):
         x, y, _, _ = to_view.MultiplyPoint(to_ras.MultiplyPoint((column, row, 0, 1)))
         plane = [view.GetSliceToRAS().GetElement(axis, 3) for axis in range(3)]
         interactor = slicer.app.layoutManager().sliceWidget("Fenestra").sliceView().interactor()
-        for event, shift in (("LeftButtonPressEvent", 0), ("MouseMoveEvent", 1)):
+        click, move = ("LeftButtonPressEvent", "LeftButtonReleaseEvent"), ("MouseMoveEvent",)
+        for events, shift in ((click, 0), (move, 1)):
             for name in ("Red", "Green", "Yellow"):
                 slicer.mrmlScene.GetNodeByID("vtkMRMLSliceNode" + name).SetSliceOffset(-1000.0)
             interactor.SetEventInformation(round(x), round(y), 0, shift)
-            interactor.InvokeEvent(event)
+            for event in events:
+                interactor.InvokeEvent(event)
             for name, axis in (("Red", 2), ("Green", 1), ("Yellow", 0)):
                 offset = slicer.mrmlScene.GetNodeByID("vtkMRMLSliceNode" + name).GetSliceOffset()
                 self.assertAlmostEqual(offset, expected[axis], delta=3.0)  # a pixel of the small image
             crosshair = slicer.mrmlScene.GetFirstNodeByClass("vtkMRMLCrosshairNode").GetCrosshairRAS()
             self.assertLess(vtk.vtkMath.Distance2BetweenPoints(crosshair, expected) ** 0.5, 5.0)
+        interactor.SetEventInformation(0, 0, 0, 1)  # beside the image: nothing is there
+        interactor.InvokeEvent("MouseMoveEvent")
+        crosshair = slicer.mrmlScene.GetFirstNodeByClass("vtkMRMLCrosshairNode").GetCrosshairRAS()
+        self.assertLess(vtk.vtkMath.Distance2BetweenPoints(crosshair, expected) ** 0.5, 5.0)
         self.assertEqual([view.GetSliceToRAS().GetElement(axis, 3) for axis in range(3)], plane)
-        interactor.InvokeEvent("LeftButtonReleaseEvent")
 
     def test_shown_image_is_complete(self):
         """One call shows the image's plane, completely and beside a 3D view of the same width."""
