@@ -125,7 +125,7 @@ void qSlicerFenestraSettingsPanel::checkExecutable() {
 /// Asks the executable for its version, and ends it if it does not answer.
 void qSlicerFenestraSettingsPanel::startCheck(const QString& executable) {
   Q_D(qSlicerFenestraSettingsPanel);
-  constexpr int patience = 30000; // ms, on a busy machine
+  constexpr int patience = 10000; // ms, on a busy machine
   d->ExecutableStateLabel->setText(tr("Checking..."));
   d->check = new qFenestraProgram(this);
   const auto version = QSharedPointer<QString>::create();

@@ -396,19 +396,20 @@ TEST_F(SlicerMaterialsImage, PreviewAcceptsTheSameFlags) {
                    [&](const QString& message) { refused << message; });
   const auto receiveImage = [&] {
     images.clear();
-    EXPECT_TRUE(waitFor(
-        [&] { return !refused.isEmpty() || (!images.empty() && images.back().frame->isLast); }));
+    const auto hasLast = [&] { // of the last change
+      return !images.empty() && images.back().isCurrent && images.back().frame->isLast;
+    };
+    EXPECT_TRUE(waitFor([&] { return !refused.isEmpty() || hasLast(); }));
     EXPECT_TRUE(refused.isEmpty()) << refused.join('\n').toStdString();
-    return readBytes(folder / "preview.png");
+    return hasLast() ? images.back().frame->display : std::vector<std::uint8_t>();
   };
-  QStringList all = {QString::fromStdString(scene.string()), "--size=24x24", "--samples=2",
-                     "--output=preview.png"};
+  QStringList all = {QString::fromStdString(scene.string()), "--size=24x24", "--samples=2"};
   const QStringList bare = all;
   for (const std::string& argument : arguments())
     all << QString::fromStdString(argument);
   const QString path = QString::fromStdString(folder.path().string());
   preview.start(program, all, path);
-  const std::string first = receiveImage();
+  const std::vector<std::uint8_t> first = receiveImage();
   preview.start(program, bare, path);
   EXPECT_TRUE(receiveImage() != first);
   preview.change(qFenestraPreview::toJson(takeFlags()));

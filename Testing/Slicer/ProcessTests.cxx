@@ -290,8 +290,11 @@ protected:
   void start(const char* samples) {
     preview.start(program, {"volume.nrrd", "--size", "16x16", "--samples", samples}, path());
   }
+  /// Waits for the last image of the last change.
   bool waitForDone() {
-    return waitFor([this] { return !images.empty() && images.back().frame->isLast; });
+    return waitFor([this] {
+      return !images.empty() && images.back().isCurrent && images.back().frame->isLast;
+    });
   }
 
   qFenestraPreview preview;
@@ -314,7 +317,7 @@ TEST_F(SlicerPreview, FastChangesAreSentAsOne) {
   ASSERT_TRUE(waitForDone());
   EXPECT_EQ(images.back().frame->samples, 4U);
   for (const qFenestraPreviewImage& image : images)
-    EXPECT_LE(image.frame->samples, 4U);
+    EXPECT_TRUE(!image.isCurrent || image.frame->samples <= 4U);
   EXPECT_TRUE(refusals.isEmpty());
 }
 

@@ -16,6 +16,7 @@ protected:
   virtual void RegisterNodes() {}
   virtual void SetMRMLSceneInternal(vtkMRMLScene*) {}
   virtual void OnMRMLSceneStartImport() {}
+  virtual void OnMRMLSceneEndImport() {}
   virtual void OnMRMLSceneNodeAdded(vtkMRMLNode*) {}
   virtual void OnMRMLSceneNodeRemoved(vtkMRMLNode*) {}
   virtual void OnMRMLNodeModified(vtkMRMLNode*) {}
