@@ -58,9 +58,9 @@ public:
   /// Requests to the renderer, which observes them: the module's session. The call data of the
   /// first two is the render's node. RenderRequestedEvent: set the node's state, render, and call
   /// its EndRender. RenderWaitEvent: return when the render has ended. ViewChangedEvent: the
-  /// view of images has appeared or changed; call AlignView later. OpeningChangedEvent: GetOpening may return another node. OpeningWaitEvent:
-  /// return when GetOpening shows what it was asked for, or cannot. SampleRequestedEvent: load the
-  /// sample.
+  /// view of images has appeared or changed; call AlignView later. OpeningChangedEvent: GetOpening
+  /// may return another node. OpeningWaitEvent: return when GetOpening shows what it was asked for,
+  /// or cannot. SampleRequestedEvent: load the sample.
   enum {
     RenderRequestedEvent = 62180,
     RenderWaitEvent,
