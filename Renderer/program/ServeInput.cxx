@@ -168,8 +168,8 @@ void ServeInput::handleLine(const std::string& line) {
     change.options = parseJson(line, "a line");
     change.id = readId(change.options);
     const std::lock_guard lock(m_mutex);
-    m_isPaused = isPause(change.options);
-    if (m_isPaused) {
+    if (isPause(change.options)) {
+      m_isPaused = true;
       m_monitor.stop = true;
       return;
     }
@@ -177,6 +177,7 @@ void ServeInput::handleLine(const std::string& line) {
     checkChange(change.options, requested, m_input);
     m_requested = std::move(requested);
     m_pending.push_back(change);
+    m_isPaused = false;
     m_monitor.stop = true;
   } catch (const Error& error) {
     writeErrorEvent(change.id, error.message());
